@@ -1,0 +1,91 @@
+// Every plugin found, with its verdict, and the door through which its things are created.
+#pragma once
+
+#include "core/job.h"
+#include "core/result.h"
+#include "plugins/instance.h"
+#include "plugins/manifest.h"
+#include "plugins/values.h"
+
+#include <diatom/abi/lattice.h>
+#include <diatom/abi/machine.h>
+#include <diatom/abi/parts.h>
+#include <diatom/abi/solver.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace diatom {
+
+/// A folder that holds a plugin.json, and what became of it. Nothing is skipped in silence.
+struct Candidate
+{
+   std::filesystem::path folder;
+   Manifest manifest; // empty when unreadable
+   bool accepted = false;
+   std::string verdict; // "ok", or the reason in one sentence
+};
+
+/// One thing on offer.
+struct Offer
+{
+   const Provided *provided = nullptr;
+   const Manifest *manifest = nullptr;
+};
+
+/// Immutable after find(); modules are loaded at first use, under a lock. Any thread.
+class Catalogue
+{
+public:
+   /// Looks in `folders` in order; within one, at <folder>/*/plugin.json and <folder>/*/*/plugin.json. Same id twice:
+   /// the higher version wins, then the earlier path; the loser is listed with the reason.
+   static std::shared_ptr<const Catalogue> find(const std::vector<std::filesystem::path> &folders);
+   /// The folders searched by default: DIATOM_PLUGIN_PATH (colon list), $XDG_DATA_HOME/diatom/plugins/1, then beside
+   /// the executable: <bin>/../plugins and <bin>/../lib/diatom/plugins/1. Never the current directory.
+   static std::vector<std::filesystem::path> defaultFolders();
+
+   const std::vector<Candidate> &candidates() const { return m_candidates; }
+   /// Accepted things of one interface, ordered by id.
+   std::vector<Offer> offers(std::string_view interface) const;
+   /// Null when nothing installed provides it.
+   const Offer *offer(std::string_view interface, std::string_view id) const;
+
+   /// Loads the module if need be, checks and completes values, creates. `Table` is diatom_lattice, diatom_parts or
+   /// diatom_machine; solvers take a scene: see moduleTable().
+   template<typename Table>
+   Result<std::shared_ptr<const Instance>> create(std::string_view interface, std::string_view id,
+                                                  const Values &values, const Job &job) const
+   {
+      return createWith(interface, id, values, job,
+                        [](const void *table, const diatom_call *call, const diatom_create *create, void **self) {
+                           return static_cast<const Table *>(table)->create(call, create, self);
+                        },
+                        [](const void *table) { return static_cast<const Table *>(table)->destroy; });
+   }
+
+   using Create = std::function<std::int32_t(const void *table, const diatom_call *, const diatom_create *, void **)>;
+   using DestroyOf = std::function<Instance::Destroy(const void *table)>;
+   /// create() for interfaces whose create() takes more than values (solvers): `create` makes the call.
+   Result<std::shared_ptr<const Instance>> createWith(std::string_view interface, std::string_view id,
+                                                      const Values &values, const Job &job, const Create &create,
+                                                      const DestroyOf &destroy) const;
+   /// A call that needs no instance (capabilities, estimate): hands over the table and the completed create record.
+   Status callWith(std::string_view interface, std::string_view id, const Values &values, const char *function,
+                   const Job &job,
+                   const std::function<std::int32_t(const void *table, const diatom_call *, const diatom_create *)>
+                      &call) const;
+
+   ~Catalogue();
+
+private:
+   Catalogue();
+   struct Loader;
+   std::vector<Candidate> m_candidates;
+   std::vector<std::pair<std::string, Offer>> m_offers; // "interface id", sorted
+   std::unique_ptr<Loader> m_loader;
+};
+
+} // namespace diatom

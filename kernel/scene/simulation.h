@@ -1,0 +1,71 @@
+// A running simulation: a solver plugin's instance on a scene, stepped, probed and recorded.
+#pragma once
+
+#include "core/job.h"
+#include "core/result.h"
+#include "plugins/catalogue.h"
+#include "scene/scene.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace diatom {
+
+struct Energy
+{
+   double kinetic = 0, elastic = 0, gravity = 0, contact = 0; // J, stored
+   double dissipated = 0; // J, taken out by damping, drag and friction since the start
+   double work = 0;       // J, put in by actuators, loads and supports since the start
+   /// (stored now + dissipated - work - stored at the start) over the largest stored energy seen; 0 when all is 0.
+   double drift = 0;
+};
+
+struct Momentum
+{
+   Vec3 linear = Vec3::Zero();  // kg m/s
+   Vec3 angular = Vec3::Zero(); // kg m2/s about the origin
+};
+
+/// Pose of every cell for drawing: 3 doubles position (m) and 4 quaternion (w x y z, turn since rest) each.
+struct Frame
+{
+   double time = 0;
+   std::vector<double> position, rotation;
+};
+
+/// One thread at a time.
+class Simulation
+{
+public:
+   /// `values` override the set-up's solver values (integrator, precision, beam, ...).
+   static Result<std::unique_ptr<Simulation>> start(std::shared_ptr<const Catalogue> catalogue,
+                                                    std::unique_ptr<Scene> scene, const Setup &setup,
+                                                    const Values &values, const Job &job);
+   ~Simulation();
+
+   const Scene &scene() const;
+   double time() const;       // s
+   std::int64_t steps() const;
+   double step() const;       // s, the step in use
+   double stableStep() const; // s, the largest stable one
+   std::int64_t stableLink() const;
+   double wallSeconds() const; // spent stepping
+
+   /// Steps until `until` (s). On divergence: ErrorCode::unstable with bond, time and remedy; the last good state stays
+   /// readable. On cancel: ErrorCode::cancelled, likewise.
+   Status advance(double until, const Job &job);
+   Result<Energy> energy(const Job &job) const;
+   Result<Momentum> momentum(const Job &job) const;
+   Result<Frame> frame(const Job &job) const;
+   /// One named channel of one cell: x y z (displacement, m), vx vy vz, rx ry rz (rotation vector, rad), strain.
+   Result<double> probe(std::int64_t cell, const std::string &channel, const Job &job) const;
+
+private:
+   Simulation();
+   struct Self;
+   std::unique_ptr<Self> m_self;
+};
+
+} // namespace diatom
