@@ -61,7 +61,8 @@ bool same(const Outline &a, const Outline &b, double tolerance)
    return true;
 }
 
-/// Whether an edge normal of `a` separates it from `b`, which stands at `at`; less than `slack` of overlap is none.
+/// Whether an edge normal of `a` separates it from `b`, which stands at `at`; less than `slack` of overlap is
+/// none.
 bool separates(const Outline &a, const Outline &b, const Vec2 &at, double slack)
 {
    for (std::size_t i = 0; i < a.corners.size(); ++i) {
@@ -79,7 +80,8 @@ bool separates(const Outline &a, const Outline &b, const Vec2 &at, double slack)
 /// Separating axes of two convex polygons.
 bool overlap(const Outline &a, const Outline &b, const Vec2 &at, double slack)
 {
-   return at.norm() < a.radius + b.radius - slack && !separates(a, b, at, slack) && !separates(b, a, -at, slack);
+   return at.norm() < a.radius + b.radius - slack && !separates(a, b, at, slack) &&
+          !separates(b, a, -at, slack);
 }
 
 struct Column
@@ -113,7 +115,8 @@ struct Outlines
 using Pair = std::pair<std::int32_t, std::int32_t>;
 
 /// All overlapping pairs, found through square bins as wide as the widest outline.
-std::vector<Pair> overlappingPairs(const std::vector<Column> &columns, const Outlines &outlines, double tolerance)
+std::vector<Pair> overlappingPairs(const std::vector<Column> &columns, const Outlines &outlines,
+                                   double tolerance)
 {
    const double width = 2 * outlines.radius / tolerance; // in steps
    struct Binned
@@ -138,11 +141,13 @@ std::vector<Pair> overlappingPairs(const std::vector<Column> &columns, const Out
       const Column &a = columns[static_cast<std::size_t>(bin.column)];
       const Outline &outlineA = outlines.distinct[static_cast<std::size_t>(a.outline)];
       for (std::int64_t dx = -1; dx <= 1; ++dx) {
-         const auto from = std::lower_bound(bins.begin(), bins.end(), Binned{bin.x + dx, bin.y - 1, 0}, before);
+         const auto from =
+             std::lower_bound(bins.begin(), bins.end(), Binned{bin.x + dx, bin.y - 1, 0}, before);
          const auto to = std::upper_bound(from, bins.end(), Binned{bin.x + dx, bin.y + 1, 0}, before);
          for (auto other = from; other != to; ++other) {
             const Column &b = columns[static_cast<std::size_t>(other->column)];
-            const Vec2 at(static_cast<double>(b.x - a.x) * tolerance, static_cast<double>(b.y - a.y) * tolerance);
+            const Vec2 at(static_cast<double>(b.x - a.x) * tolerance,
+                          static_cast<double>(b.y - a.y) * tolerance);
             if (other->column == bin.column ||
                 overlap(outlineA, outlines.distinct[static_cast<std::size_t>(b.outline)], at, 8 * tolerance))
                pairs.emplace_back(bin.column, other->column);
@@ -157,7 +162,8 @@ std::vector<Pair> overlappingPairs(const std::vector<Column> &columns, const Out
 
 Columns::Columns(const Lattice &lattice, std::span<const Index> cells)
 {
-   // Places are told apart to a thousandth of a cell; two columns that rounding split still overlap each other.
+   // Places are told apart to a thousandth of a cell; two columns that rounding split still overlap each
+   // other.
    const double tolerance = 1e-3 * lattice.radius();
    const Outlines outlines(lattice, tolerance);
    std::vector<Column> ofCell;
@@ -176,7 +182,7 @@ Columns::Columns(const Lattice &lattice, std::span<const Index> cells)
    m_columnOf.reserve(cells.size());
    for (const Column &column : ofCell)
       m_columnOf.push_back(static_cast<std::int32_t>(
-         std::lower_bound(columns.begin(), columns.end(), column, before) - columns.begin()));
+          std::lower_bound(columns.begin(), columns.end(), column, before) - columns.begin()));
 
    const std::vector<Pair> pairs = overlappingPairs(columns, outlines, tolerance);
    m_start.assign(columns.size() + 1, 0);

@@ -1,5 +1,5 @@
-// Which cells lie over one another when seen from above: cells of equal outline at one place make a column, and columns
-// whose outlines overlap get in each other's way.
+// Which cells lie over one another when seen from above: cells of equal outline at one place make a column,
+// and columns whose outlines overlap get in each other's way.
 #pragma once
 
 #include "core/index.h"

@@ -38,13 +38,10 @@ std::int32_t IndexTable::add(Index index)
    return number;
 }
 
-std::int32_t IndexTable::find(Index index) const
-{
-   return m_slots[slot(index)];
-}
+std::int32_t IndexTable::find(Index index) const { return m_slots[slot(index)]; }
 
 PartGraph::PartGraph(const Lattice &lattice, const Decomposition &parts)
-   : m_tolerance(1e-3 * lattice.radius()), m_cells(parts.covered.size())
+    : m_tolerance(1e-3 * lattice.radius()), m_cells(parts.covered.size())
 {
    addCells(parts);
    findSteps(lattice);
@@ -92,7 +89,7 @@ void PartGraph::addCells(const Decomposition &parts)
    for (std::size_t part = 0; part < this->parts(); ++part)
       for (const std::int32_t cell : cellsOf(static_cast<std::int32_t>(part)))
          m_cellParts[static_cast<std::size_t>(next[static_cast<std::size_t>(cell)]++)] =
-            static_cast<std::int32_t>(part);
+             static_cast<std::int32_t>(part);
 }
 
 void PartGraph::findSteps(const Lattice &lattice)

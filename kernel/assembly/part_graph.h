@@ -1,4 +1,5 @@
-// Parts as the planner sees them: the cells of each, how high they lie, which part can hold which, what rests on the plate.
+// Parts as the planner sees them: the cells of each, how high they lie, which part can hold which, what rests
+// on the plate.
 #pragma once
 
 #include "assembly/columns.h"
@@ -27,8 +28,8 @@ private:
    std::size_t m_mask = 0;
 };
 
-/// Immutable once made. Parts are numbered as in the decomposition; cells are numbered here. Several parts may share a
-/// cell (three triangles of one octahedron): the first placed holds the others.
+/// Immutable once made. Parts are numbered as in the decomposition; cells are numbered here. Several parts
+/// may share a cell (three triangles of one octahedron): the first placed holds the others.
 class PartGraph
 {
 public:
