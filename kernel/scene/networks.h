@@ -23,11 +23,11 @@ struct Problem
 struct Network
 {
    std::vector<Index> cells; // sorted
-   std::vector<int>
-       sources; // into Setup::sources: those that are part of the net or touch it with their + terminal
-   std::vector<int>
-       returns; // into Setup::sources: those that touch it with their - terminal and drive it inverted
    std::vector<Index> actuators; // driven by it
+   /// Into Setup::sources: those that are part of the net or touch it with their + terminal.
+   std::vector<int> sources;
+   /// Into Setup::sources: those that touch it with their - terminal and drive it inverted.
+   std::vector<int> returns;
 
    /// What sets its potential: index into Setup::sources, -1 when nothing does or several sources are in
    /// conflict.
@@ -44,8 +44,8 @@ struct DrivenActuator
 {
    Index cell;
    int axis = 0; // world axis 0 1 2 of its two terminals
-   int netA = -1,
-       netB = -1; // at the - and + terminal; the same one when the net's potential drives it against ground
+   /// At the - and + terminal; one and the same when the net's potential drives it against ground.
+   int netA = -1, netB = -1;
 };
 
 struct Networks
