@@ -20,7 +20,7 @@ struct Effect
 <<<<<<< HEAD
    bool forced = false;          // the user said on or off, whatever the planner found
 =======
-   bool forced = false;          // by the user, against the planner
+   bool forced = false; // by the user, against the planner
 >>>>>>> main
    std::string why;              // one sentence
    std::vector<Index> evidence;  // up to a few cells

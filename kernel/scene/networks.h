@@ -22,7 +22,7 @@ struct Problem
 
 struct Network
 {
-   std::vector<Index> cells; // sorted
+   std::vector<Index> cells;     // sorted
    std::vector<Index> actuators; // driven by it
    /// Into Setup::sources: those that are part of the net or touch it with their + terminal.
    std::vector<int> sources;
