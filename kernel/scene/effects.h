@@ -17,11 +17,7 @@ struct Effect
 {
    std::string name; // "gravity", "damping", "actuation", ...
    bool on = false;
-<<<<<<< HEAD
    bool forced = false;          // the user said on or off, whatever the planner found
-=======
-   bool forced = false; // by the user, against the planner
->>>>>>> main
    std::string why;              // one sentence
    std::vector<Index> evidence;  // up to a few cells
    std::optional<double> costNs; // per cell-step, where measured
