@@ -1,4 +1,5 @@
-// A sparse array of cells over all of index space: a tree of 16^3 bricks, copy-on-write, cheap to keep every version of.
+// A sparse array of cells over all of index space: a tree of 16^3 bricks, copy-on-write, cheap to keep every
+// version of.
 #pragma once
 
 #include "cells/cell.h"
@@ -16,8 +17,8 @@ namespace detail {
 struct Node;
 }
 
-/// A value: copying costs a pointer, copies share everything until one of them changes. Different copies may be used
-/// from different threads; one object from one thread at a time (const calls from many).
+/// A value: copying costs a pointer, copies share everything until one of them changes. Different copies may
+/// be used from different threads; one object from one thread at a time (const calls from many).
 class CellArray
 {
 public:
@@ -38,8 +39,8 @@ public:
    /// Replaces a material everywhere.
    void replaceMaterial(MaterialIndex from, MaterialIndex to);
 
-   /// Calls visit(index, cell) for every cell within `box`, in order of (x, y, z) blocks that depends on content only.
-   /// Stops when visit returns false; returns whether it ran to the end.
+   /// Calls visit(index, cell) for every cell within `box`, in order of (x, y, z) blocks that depends on
+   /// content only. Stops when visit returns false; returns whether it ran to the end.
    bool visit(const Box &box, const std::function<bool(Index, Cell)> &visit) const;
    bool visit(const std::function<bool(Index, Cell)> &visit) const;
    /// Calls visit(box, cell) for maximal stored blocks of one value: uniform regions are not expanded.

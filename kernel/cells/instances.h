@@ -25,8 +25,8 @@ struct Placement
    friend constexpr auto operator<=>(const Placement &, const Placement &) = default;
 };
 
-/// A value like CellArray. The same placement is held at most once. Ordered along a space-filling curve by origin, so
-/// that chunks are compact.
+/// A value like CellArray. The same placement is held at most once. Ordered along a space-filling curve by
+/// origin, so that chunks are compact.
 class Instances
 {
 public:
@@ -42,7 +42,8 @@ public:
    friend bool operator==(const Instances &a, const Instances &b);
    void hash(Hasher &hasher) const;
 
-   /// Chunks of neighbouring placements, for spatial queries that keep bounds per chunk. Immutable and shared.
+   /// Chunks of neighbouring placements, for spatial queries that keep bounds per chunk. Immutable and
+   /// shared.
    using Chunk = std::vector<Placement>;
    const std::vector<std::shared_ptr<const Chunk>> &chunks() const { return m_chunks; }
 

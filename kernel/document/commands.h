@@ -1,4 +1,5 @@
-// The one table of editing commands. Menus, keys, undo texts, the command line, scripts and the log all use it.
+// The one table of editing commands. Menus, keys, undo texts, the command line, scripts and the log all use
+// it.
 #pragma once
 
 #include "core/job.h"
@@ -15,8 +16,8 @@
 
 namespace diatom {
 
-/// A parameter of a command: name, kind ("index", "box", "material", "number", "text", "cells", ...), whether it must be
-/// given, and one line of help.
+/// A parameter of a command: name, kind ("index", "box", "material", "number", "text", "cells", ...), whether
+/// it must be given, and one line of help.
 struct CommandParameter
 {
    const char *name, *kind;
@@ -35,11 +36,12 @@ struct CommandContext
 /// One editing command.
 struct Command
 {
-   const char *id;    // "place", "fill", "erase", ...
-   const char *text;  // for menus: "Place cell"
-   const char *help;  // one sentence
+   const char *id;   // "place", "fill", "erase", ...
+   const char *text; // for menus: "Place cell"
+   const char *help; // one sentence
    std::span<const CommandParameter> parameters;
-   /// Changes the design or leaves it as it was and fails. The result is the undo text: "place", "fill 3x3x3".
+   /// Changes the design or leaves it as it was and fails. The result is the undo text: "place", "fill
+   /// 3x3x3".
    Result<std::string> (*apply)(CommandContext &context, const nlohmann::json &arguments);
 };
 

@@ -19,8 +19,8 @@ struct StlOptions
    What what = What::cells;
    std::optional<MaterialIndex> material; // only this one
    bool ascii = false;
-   int detail = -1;         // of part meshes; -1 = the finest
-   double unit = 1e-3;      // metres per STL unit: millimetres by custom
+   int detail = -1;    // of part meshes; -1 = the finest
+   double unit = 1e-3; // metres per STL unit: millimetres by custom
 };
 
 struct StlReport
@@ -35,7 +35,7 @@ Result<StlReport> writeStl(const Hierarchy &hierarchy, const PartMaker *maker, c
                            const std::filesystem::path &file, const Job &job);
 /// One file per material that occurs: name.MATERIAL.stl beside `file`.
 Result<std::vector<StlReport>> writeStlByMaterial(const Hierarchy &hierarchy, const PartMaker *maker,
-                                                  const StlOptions &options, const std::filesystem::path &file,
-                                                  const Job &job);
+                                                  const StlOptions &options,
+                                                  const std::filesystem::path &file, const Job &job);
 
 } // namespace diatom

@@ -1,4 +1,5 @@
-// Which physical effects a scene calls for, why, and with which cells as evidence. An effect that is off costs nothing.
+// Which physical effects a scene calls for, why, and with which cells as evidence. An effect that is off
+// costs nothing.
 #pragma once
 
 #include "cells/hierarchy.h"
@@ -15,9 +16,9 @@ struct Effect
 {
    std::string name; // "gravity", "damping", "actuation", ...
    bool on = false;
-   bool forced = false; // by the user, against the planner
-   std::string why;     // one sentence
-   std::vector<Index> evidence; // up to a few cells
+   bool forced = false;          // by the user, against the planner
+   std::string why;              // one sentence
+   std::vector<Index> evidence;  // up to a few cells
    std::optional<double> costNs; // per cell-step, where measured
 };
 

@@ -22,15 +22,15 @@ struct Problem
 
 struct Network
 {
-   std::vector<Index> cells;    // sorted
-   std::vector<int> sources;    // into Setup::sources
+   std::vector<Index> cells;     // sorted
+   std::vector<int> sources;     // into Setup::sources
    std::vector<Index> actuators; // driven by it
 };
 
 struct DrivenActuator
 {
    Index cell;
-   int axis = 0;     // world axis 0 1 2 of its two terminals
+   int axis = 0;             // world axis 0 1 2 of its two terminals
    int netA = -1, netB = -1; // at the - and + terminal
 };
 
@@ -41,8 +41,8 @@ struct Networks
    std::vector<Problem> problems;
 };
 
-/// One-net rule of the earlier programs (amoeba.md 5.1): an actuator between two conductors of one and the same net is
-/// driven by that net's potential against ground; between two nets, by their difference.
+/// One-net rule of the earlier programs (amoeba.md 5.1): an actuator between two conductors of one and the
+/// same net is driven by that net's potential against ground; between two nets, by their difference.
 Networks findNetworks(const Hierarchy &hierarchy, const Setup &setup, const Job &job);
 
 } // namespace diatom

@@ -14,14 +14,15 @@ extern "C" {
 #define DIATOM_AXIS_ROTARY 1
 
 /* Plugin memory, immutable until destroy. SI: metres, radians, seconds. */
-typedef struct diatom_machine_description {
+typedef struct diatom_machine_description
+{
    int64_t size;
    int32_t axes;
    int32_t feeders;
-   const char *const *axis_name;    /* "X", "Y", "Z", "A" */
-   const int32_t *axis_kind;        /* DIATOM_AXIS_... */
-   const double *axis_direction;    /* 3 each */
-   const double *axis_minimum;      /* m or rad */
+   const char *const *axis_name; /* "X", "Y", "Z", "A" */
+   const int32_t *axis_kind;     /* DIATOM_AXIS_... */
+   const double *axis_direction; /* 3 each */
+   const double *axis_minimum;   /* m or rad */
    const double *axis_maximum;
    const double *axis_home;
    const double *axis_speed;        /* rapid, m/s or rad/s */
@@ -29,13 +30,13 @@ typedef struct diatom_machine_description {
    const double *feeder_position;   /* 3 each: where the first part of feeder f is picked up */
    const int32_t *feeder_columns;   /* parts per row; 1 for a feeder that presents each part at one place */
    const int32_t *feeder_rows;
-   const double *feeder_pitch;      /* metres between neighbours in rows and columns */
-   double origin[3];                /* where the build plate's origin lies */
-   double clearance;                /* height above the highest thing for travel, m */
-   double approach;                 /* height above a part where feeding begins, m */
-   double feed;                     /* speed while picking and placing, m/s */
-   double grip_seconds;             /* dwell while the gripper closes or opens */
-   const char *suffix;              /* file suffix of its programs, without the dot */
+   const double *feeder_pitch; /* metres between neighbours in rows and columns */
+   double origin[3];           /* where the build plate's origin lies */
+   double clearance;           /* height above the highest thing for travel, m */
+   double approach;            /* height above a part where feeding begins, m */
+   double feed;                /* speed while picking and placing, m/s */
+   double grip_seconds;        /* dwell while the gripper closes or opens */
+   const char *suffix;         /* file suffix of its programs, without the dot */
 } diatom_machine_description;
 
 /* Operations of a program. */
@@ -48,38 +49,42 @@ typedef struct diatom_machine_description {
 #define DIATOM_OP_HOME 6
 
 /* Machine-neutral program, one entry per operation. Host memory, valid until the call returns. */
-typedef struct diatom_program {
+typedef struct diatom_program
+{
    int64_t size;
    int64_t count;
    int32_t axes;
    int32_t reserved;
    const int32_t *op;
-   const int32_t *moved;     /* bit a set: axis a is commanded */
-   const double *target;     /* axes per operation, m or rad */
-   const double *feed;       /* m/s */
-   const double *seconds;    /* dwell */
-   const int64_t *part;      /* number of the part picked or placed, -1 = none */
-   const char *const *note;  /* null = none */
-   const char *name;         /* the design's name, for a heading */
+   const int32_t *moved;    /* bit a set: axis a is commanded */
+   const double *target;    /* axes per operation, m or rad */
+   const double *feed;      /* m/s */
+   const double *seconds;   /* dwell */
+   const int64_t *part;     /* number of the part picked or placed, -1 = none */
+   const char *const *note; /* null = none */
+   const char *name;        /* the design's name, for a heading */
    int64_t parts;
    const int32_t *part_feeder;
    const int32_t *part_index; /* 3 per part: lattice index of its first cell */
 } diatom_program;
 
 /* Text of the program, in pieces, in order. Copied by the sink at once. */
-typedef struct diatom_text_sink {
+typedef struct diatom_text_sink
+{
    int64_t size;
    void *host;
    int32_t (*text)(const struct diatom_text_sink *sink, const char *bytes, int64_t count);
 } diatom_text_sink;
 
-typedef struct diatom_machine {
-   int32_t (*create)(const diatom_call *call, const diatom_create *create, void **self);                 /* [any] */
-   int32_t (*describe)(void *self, const diatom_call *call, const diatom_machine_description **machine); /* [any] */
+typedef struct diatom_machine
+{
+   int32_t (*create)(const diatom_call *call, const diatom_create *create, void **self); /* [any] */
+   int32_t (*describe)(void *self, const diatom_call *call,
+                       const diatom_machine_description **machine); /* [any] */
    /* Same program, same bytes: no date, no locale, no host name. */
    int32_t (*post)(void *self, const diatom_call *call, const diatom_program *program,
-                   const diatom_text_sink *sink);                                                        /* [any] */
-   void (*destroy)(void *self);                                                                          /* [any] */
+                   const diatom_text_sink *sink); /* [any] */
+   void (*destroy)(void *self);                   /* [any] */
 } diatom_machine;
 
 #ifdef __cplusplus
