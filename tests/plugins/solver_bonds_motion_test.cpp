@@ -197,9 +197,9 @@ void SolverBondsMotionTest::dampedAndDrivenEnergyBalances_data()
 {
    QTest::addColumn<QString>("integrator");
    QTest::addColumn<double>("bound");
-   QTest::newRow("semi-implicit") << "semi_implicit" << 2e-2; // first order at a tenth of the stable step
-   QTest::newRow("verlet") << "verlet" << 1e-3;
-   QTest::newRow("rk4") << "rk4" << 2e-3;
+   QTest::newRow("semi-implicit") << "semi_implicit" << 1e-3; // first order: measured 2e-4
+   QTest::newRow("verlet") << "verlet" << 5e-5; // second order; contact makes no method better: measured 6e-6
+   QTest::newRow("rk4") << "rk4" << 5e-5;
 }
 
 /// Everything at once: gravity, damping, drag, an actuator, a load, ground with friction. The balance, against the energy
@@ -468,7 +468,7 @@ void SolverBondsMotionTest::actuatorsReachTheirFreeShape()
       scene.addRow("actuator", {double(mode), 0, 0.4, 0, -1}, 1); // strain 0.2 of the middle cell
       Run run(scene);
       QVERIFY2(run.status == DIATOM_OK, run.host.said.c_str());
-      QCOMPARE(run.to(0.1), DIATOM_OK);
+      QCOMPARE(run.to(0.1, 0.05 * run.estimate.stable_step), DIATOM_OK);
       const auto p = run.read("position");
       const auto q = run.read("rotation");
       const double l = 1e-3, a = 0.1; // half of the strain in each bond
@@ -489,7 +489,8 @@ void SolverBondsMotionTest::actuatorsReachTheirFreeShape()
       QVERIFY(std::abs(q[8] - std::cos(angle / 2)) < 1e-6);
       QVERIFY(std::abs(q[mode == 3 ? 9 : 11] - std::sin(angle / 2)) < 1e-6);
       const auto e = run.read("energy");
-      QVERIFY(std::abs(e[4] - e[5]) < 0.05 * e[5]); // all the work was dissipated
+      // All the work of the sudden start was dissipated; its power is summed to first order, at a twentieth of the limit.
+      QVERIFY2(std::abs(e[4] - e[5]) < 0.06 * e[5], qPrintable(QString::number(e[4] / e[5])));
    }
 }
 
