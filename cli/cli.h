@@ -40,7 +40,7 @@ public:
 
    bool json = false;
    int threads = 0;
-   std::string progress = "auto"; // auto, line, json, none
+   std::string progress = "auto";          // auto, line, json, none
    std::vector<std::string> pluginFolders; // searched before the default ones
 
    /// Reports on stderr as `progress` says; cancelled by Ctrl+C (a second one kills).

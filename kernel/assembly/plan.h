@@ -19,7 +19,7 @@ namespace diatom {
 /// Choices a document stores for making the assembly.
 struct AssemblySetup
 {
-   std::string parts;   // id of the decomposition; empty = the first that fits the lattice
+   std::string parts; // id of the decomposition; empty = the first that fits the lattice
    Values partsValues;
    std::string machine = "org.diatom_cad.machine.gcode";
    Values machineValues;
@@ -32,8 +32,9 @@ struct AssemblyPlan
    std::vector<Problem> problems;   // parts that cannot be supported or reached; these are not in `order`
 };
 
-/// Layer by layer from the build plate: a part is placed only when the plate or a part already placed holds it through
-/// a joined contact, and nothing already placed is in the way from above. Order depends on content only.
+/// Layer by layer from the build plate: a part is placed only when the plate or a part already placed holds
+/// it through a joined contact, and nothing already placed is in the way from above. Order depends on content
+/// only.
 Result<AssemblyPlan> planAssembly(const Hierarchy &hierarchy, const Decomposition &parts, const Job &job);
 
 struct ProgramSummary
@@ -53,9 +54,9 @@ public:
                                                       const Values &values, const Job &job);
    const diatom_machine_description &description() const;
    /// Pick-and-place program of the plan, as text in pieces.
-   Result<ProgramSummary> write(const Hierarchy &hierarchy, const Decomposition &parts, const AssemblyPlan &plan,
-                                const std::string &name, const std::function<void(std::string_view)> &sink,
-                                const Job &job) const;
+   Result<ProgramSummary> write(const Hierarchy &hierarchy, const Decomposition &parts,
+                                const AssemblyPlan &plan, const std::string &name,
+                                const std::function<void(std::string_view)> &sink, const Job &job) const;
    ~Machine();
 
 private:

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,12 +26,12 @@ struct Placement
    friend constexpr auto operator<=>(const Placement &, const Placement &) = default;
 };
 
-/// A value like CellArray. The same placement is held at most once. Ordered along a space-filling curve by origin, so
-/// that chunks are compact.
+/// A value like CellArray. The same placement is held at most once. Ordered along a space-filling curve by
+/// origin, so that chunks are compact.
 class Instances
 {
 public:
-   std::uint64_t count() const;
+   std::uint64_t count() const { return m_count; }
    bool contains(const Placement &placement) const;
    /// False when it was there already.
    bool insert(const Placement &placement);
@@ -42,12 +43,20 @@ public:
    friend bool operator==(const Instances &a, const Instances &b);
    void hash(Hasher &hasher) const;
 
-   /// Chunks of neighbouring placements, for spatial queries that keep bounds per chunk. Immutable and shared.
+   /// Chunks of neighbouring placements, for spatial queries that keep bounds per chunk. Immutable and
+   /// shared.
    using Chunk = std::vector<Placement>;
-   const std::vector<std::shared_ptr<const Chunk>> &chunks() const { return m_chunks; }
+   std::span<const std::shared_ptr<const Chunk>> chunks() const
+   {
+      return m_chunks ? std::span(*m_chunks) : std::span<const std::shared_ptr<const Chunk>>();
+   }
 
 private:
-   std::vector<std::shared_ptr<const Chunk>> m_chunks;
+   using Chunks = std::vector<std::shared_ptr<const Chunk>>;
+   Chunks &writable();
+
+   std::shared_ptr<Chunks> m_chunks; // never changed while shared; no empty chunk; null = no instances
+   std::uint64_t m_count = 0;
 };
 
 } // namespace diatom

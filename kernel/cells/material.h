@@ -8,8 +8,9 @@
 
 namespace diatom {
 
-/// Fifteen stiffness constants of a cell's bonds, in the cell's own axes (amoeba.md 1.3): axial N/m per bond axis; shear
-/// N/m [bond axis][displacement axis], diagonal unused; bending and torsion N m/rad per rotation axis.
+/// Fifteen stiffness constants of a cell's bonds, in the cell's own axes (amoeba.md 1.3): axial N/m per bond
+/// axis; shear N/m [bond axis][displacement axis], diagonal unused; bending and torsion N m/rad per rotation
+/// axis.
 struct BondConstants
 {
    std::array<double, 3> axial{};
@@ -24,8 +25,8 @@ struct Actuation
 {
    enum class Mode { axial, shear, bending, torsion };
    Mode mode = Mode::axial;
-   int axis = 0;              // cell axis: direction of axial and shear, rotation axis of bending and torsion
-   double strainPerVolt = 0;  // of the whole cell: half of it goes to each of its two bonds
+   int axis = 0;             // cell axis: direction of axial and shear, rotation axis of bending and torsion
+   double strainPerVolt = 0; // of the whole cell: half of it goes to each of its two bonds
    bool axisFromWires = false; // the earlier programs: the axis is that of the two conductors beside the cell
    friend bool operator==(const Actuation &, const Actuation &) = default;
 };
@@ -40,11 +41,11 @@ struct Material
    double density = 1000;      // kg/m3
    double youngsModulus = 1e6; // Pa
    double poissonRatio = 0.3;
-   double dampingRatio = 0;    // of each bond, 1 = critical
+   double dampingRatio = 0;            // of each bond, 1 = critical
    std::optional<BondConstants> bonds; // instead of E and nu
    ElectricalRole role = ElectricalRole::insulator;
-   /// Faces that conduct, bit 2a for -axis a, bit 2a+1 for +axis a of the cell; all six for plain conductors. For an
-   /// actuator or source: its terminals.
+   /// Faces that conduct, bit 2a for -axis a, bit 2a+1 for +axis a of the cell; all six for plain conductors.
+   /// For an actuator or source: its terminals.
    std::uint8_t ports = 0x3f;
    Actuation actuation; // when role is actuator
    friend bool operator==(const Material &, const Material &) = default;

@@ -1,5 +1,5 @@
-// The assembly itself: lattice, materials, composite definitions and the top-level body. A value: copies share
-// everything, so that undo keeps models and a worker reads one while the user edits the next.
+// The assembly itself: lattice, materials, composite definitions and the top-level body. A value: copies
+// share everything, so that undo keeps models and a worker reads one while the user edits the next.
 #pragma once
 
 #include "cells/cell_array.h"
@@ -51,8 +51,8 @@ struct Model
    /// 0 when there is none of that id. Ids of definitions start at 1.
    DefinitionId definition(std::string_view id) const;
    const Definition *definition(DefinitionId id) const;
-   /// Adds a definition or replaces the one of that id. Refuses a body that would contain itself through any chain,
-   /// naming the chain.
+   /// Adds a definition or replaces the one of that id. Refuses a body that would contain itself through any
+   /// chain, naming the chain.
    Result<DefinitionId> setDefinition(Definition definition);
    /// Refuses while instances exist.
    Status eraseDefinition(DefinitionId id);

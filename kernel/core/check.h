@@ -1,4 +1,5 @@
-// DIATOM_CHECK: for bugs only, on in every build. Bad input and failing systems are Results (result.h), never checks.
+// DIATOM_CHECK: for bugs only, on in every build. Bad input and failing systems are Results (result.h), never
+// checks.
 #pragma once
 
 namespace diatom {

@@ -60,7 +60,8 @@ Result<std::string> readFile(const std::filesystem::path &path, std::uint64_t li
    return bytes;
 }
 
-AtomicFile::AtomicFile(std::filesystem::path target) : m_target(std::move(target)), m_toOutput(m_target == "-")
+AtomicFile::AtomicFile(std::filesystem::path target)
+    : m_target(std::move(target)), m_toOutput(m_target == "-")
 {
    if (m_toOutput) {
       m_descriptor = STDOUT_FILENO;
@@ -99,8 +100,8 @@ AtomicFile::~AtomicFile()
 void AtomicFile::fail(const char *doing)
 {
    if (m_error.empty())
-      m_error = fmt::format("{}: cannot be {}: {}; the old file, if any, is as it was", m_target.string(), doing,
-                            std::strerror(errno));
+      m_error = fmt::format("{}: cannot be {}: {}; the old file, if any, is as it was", m_target.string(),
+                            doing, std::strerror(errno));
 }
 
 void AtomicFile::put(const char *data, std::size_t count)
@@ -135,8 +136,8 @@ void AtomicFile::write(std::string_view bytes)
 void AtomicFile::writeAt(std::uint64_t offset, std::string_view bytes)
 {
    flush();
-   if (m_error.empty() &&
-       ::pwrite(m_descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset)) != static_cast<ssize_t>(bytes.size()))
+   if (m_error.empty() && ::pwrite(m_descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset)) !=
+                              static_cast<ssize_t>(bytes.size()))
       fail("written");
 }
 

@@ -1,4 +1,5 @@
-// Whole files in, and files out that are either complete or not there: a crash or a full disk leaves the old one.
+// Whole files in, and files out that are either complete or not there: a crash or a full disk leaves the old
+// one.
 #pragma once
 
 #include "core/result.h"
@@ -14,9 +15,9 @@ namespace diatom {
 /// The file's bytes; `-` reads standard input. Refuses files above `limit` bytes before reading them.
 Result<std::string> readFile(const std::filesystem::path &path, std::uint64_t limit = std::uint64_t{4} << 30);
 
-/// Writes beside the target and renames on commit(). Without commit() the temporary file is removed and the target is
-/// as it was. Errors are kept: write() after a failure does nothing, commit() reports the first one. Not copyable; one
-/// thread. The path `-` writes to standard output.
+/// Writes beside the target and renames on commit(). Without commit() the temporary file is removed and the
+/// target is as it was. Errors are kept: write() after a failure does nothing, commit() reports the first
+/// one. Not copyable; one thread. The path `-` writes to standard output.
 class AtomicFile
 {
 public:

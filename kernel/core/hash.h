@@ -32,18 +32,15 @@ public:
 
    void bytes(const void *data, std::size_t count);
    template<typename T>
-      requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-   void add(T value)
-   {
-      bytes(&value, sizeof value);
-   }
+   requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+   void add(T value) { bytes(&value, sizeof value); }
    void add(std::string_view text)
    {
       add(std::uint64_t{text.size()});
       bytes(text.data(), text.size());
    }
    template<typename T>
-      requires std::is_arithmetic_v<T>
+   requires std::is_arithmetic_v<T>
    void add(std::span<const T> values)
    {
       add(std::uint64_t{values.size()});

@@ -20,7 +20,8 @@ struct Index
    friend constexpr Index operator*(Index a, std::int32_t k) { return {a.x * k, a.y * k, a.z * k}; }
 };
 
-/// Largest absolute coordinate a cell may have. The margin to 2^31 keeps sums of two indices from overflowing.
+/// Largest absolute coordinate a cell may have. The margin to 2^31 keeps sums of two indices from
+/// overflowing.
 inline constexpr std::int32_t kIndexLimit = (1 << 30) - 1;
 
 /// True when every coordinate is within +-kIndexLimit.
@@ -65,8 +66,9 @@ struct Box
    /// Cells in the box; saturates nowhere below 2^93, hence the floating type.
    constexpr double volume() const
    {
-      return empty() ? 0.0
-                     : (double(max.x) - min.x + 1) * (double(max.y) - min.y + 1) * (double(max.z) - min.z + 1);
+      return empty()
+                 ? 0.0
+                 : (double(max.x) - min.x + 1) * (double(max.y) - min.y + 1) * (double(max.z) - min.z + 1);
    }
 };
 
@@ -78,9 +80,6 @@ constexpr std::int32_t floorMod(std::int32_t a, std::int32_t m)
 }
 
 /// Floor division.
-constexpr std::int32_t floorDiv(std::int32_t a, std::int32_t m)
-{
-   return (a - floorMod(a, m)) / m;
-}
+constexpr std::int32_t floorDiv(std::int32_t a, std::int32_t m) { return (a - floorMod(a, m)) / m; }
 
 } // namespace diatom

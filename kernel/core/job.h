@@ -8,8 +8,8 @@
 
 namespace diatom {
 
-/// Handed to every operation that may take longer than a moment. cancel() may be called from any thread; everything
-/// else belongs to the thread that runs the work. Results never depend on the number of threads.
+/// Handed to every operation that may take longer than a moment. cancel() may be called from any thread;
+/// everything else belongs to the thread that runs the work. Results never depend on the number of threads.
 class Job
 {
 public:
@@ -31,8 +31,9 @@ public:
    void setThreads(int threads) { m_threads = threads; }
    int threads() const { return m_threads; }
 
-   /// Runs body(begin, end) over [0, count) in pieces of `grain`. The split depends on `grain` only. A nested call runs
-   /// in place. Bodies must write to disjoint places; sums are made per piece and added in order by the caller.
+   /// Runs body(begin, end) over [0, count) in pieces of `grain`. The split depends on `grain` only. A nested
+   /// call runs in place. Bodies must write to disjoint places; sums are made per piece and added in order by
+   /// the caller.
    void parallelFor(std::int64_t count, std::int64_t grain,
                     const std::function<void(std::int64_t begin, std::int64_t end)> &body) const;
 

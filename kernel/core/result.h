@@ -1,4 +1,5 @@
-// Failure as a value: a code for the exit status and one sentence for the user, naming file, place and remedy.
+// Failure as a value: a code for the exit status and one sentence for the user, naming file, place and
+// remedy.
 #pragma once
 
 #include <string>

@@ -12,10 +12,18 @@ std::string numberText(double value)
    return {buffer, end};
 }
 
+std::string singleText(float value)
+{
+   char buffer[32];
+   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+   return {buffer, end};
+}
+
 std::string fixedText(double value, int decimals)
 {
    char buffer[400];
-   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals).ptr;
+   const auto end =
+       std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals).ptr;
    std::string text(buffer, end);
    if (text.starts_with('-') && text.find_first_of("123456789") == std::string::npos && std::isfinite(value))
       text.erase(0, 1);

@@ -23,8 +23,8 @@ public:
 
    const Design &design() const { return m_history[m_now].design; }
    const std::shared_ptr<const Catalogue> &catalogue() const { return m_catalogue; }
-   /// Current lattice and hierarchy; made anew after each change, sharing what did not change. Errors when the lattice is
-   /// not installed.
+   /// Current lattice and hierarchy; made anew after each change, sharing what did not change. Errors when
+   /// the lattice is not installed.
    Result<std::shared_ptr<const Hierarchy>> hierarchy() const;
 
    /// Runs a command of the table. On failure nothing has changed.
@@ -37,8 +37,8 @@ public:
    bool undo();
    bool redo();
 
-   /// One JSON object per line, {"command": ..., "arguments": {...}}: the commands that led from the opened design to
-   /// the current one, undone ones left out.
+   /// One JSON object per line, {"command": ..., "arguments": {...}}: the commands that led from the opened
+   /// design to the current one, undone ones left out.
    std::string log() const;
    /// Runs a log. Errors name the line.
    Status replay(std::string_view log, const Job &job);
@@ -55,8 +55,9 @@ private:
    std::shared_ptr<const Catalogue> m_catalogue;
    std::vector<Step> m_history;
    std::size_t m_now = 0, m_saved = 0;
-   mutable std::shared_ptr<const Hierarchy> m_hierarchy;
-   mutable std::size_t m_hierarchyOf = 0;
+   mutable std::shared_ptr<const Hierarchy> m_hierarchy; // of step m_hierarchyOf, or of one that is gone
+   mutable std::size_t m_hierarchyOf = kNoStep;
+   static constexpr std::size_t kNoStep = static_cast<std::size_t>(-1);
 };
 
 } // namespace diatom

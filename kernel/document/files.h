@@ -20,8 +20,8 @@ struct Opened
    std::vector<std::string> notes; // kept-but-unknown keys, assumptions made on import
 };
 
-/// Reads a .diatom document (JSON, or zip with packed cells) or a file of the earlier programs. Errors name the file,
-/// the place in it (JSON pointer, byte) and the remedy.
+/// Reads a .diatom document (JSON, or zip with packed cells) or a file of the earlier programs. Errors name
+/// the file, the place in it (JSON pointer, byte) and the remedy.
 Result<Opened> openDesign(const std::filesystem::path &file, const Job &job);
 /// The same for bytes already read; `name` stands for the file in messages.
 Result<Opened> readDesign(std::string_view bytes, const std::string &name, const Job &job);

@@ -19,13 +19,14 @@ struct StlOptions
    What what = What::cells;
    std::optional<MaterialIndex> material; // only this one
    bool ascii = false;
-   int detail = -1;         // of part meshes; -1 = the finest
-   double unit = 1e-3;      // metres per STL unit: millimetres by custom
+   int detail = -1;    // of part meshes; -1 = the finest
+   double unit = 1e-3; // metres per STL unit: millimetres by custom
 };
 
 struct StlReport
 {
    std::filesystem::path file;
+   std::optional<MaterialIndex> material; // when the file holds only this one
    std::uint64_t triangles = 0, bytes = 0;
    std::uint64_t cells = 0, parts = 0;
 };
@@ -35,7 +36,7 @@ Result<StlReport> writeStl(const Hierarchy &hierarchy, const PartMaker *maker, c
                            const std::filesystem::path &file, const Job &job);
 /// One file per material that occurs: name.MATERIAL.stl beside `file`.
 Result<std::vector<StlReport>> writeStlByMaterial(const Hierarchy &hierarchy, const PartMaker *maker,
-                                                  const StlOptions &options, const std::filesystem::path &file,
-                                                  const Job &job);
+                                                  const StlOptions &options,
+                                                  const std::filesystem::path &file, const Job &job);
 
 } // namespace diatom

@@ -1,4 +1,5 @@
-// The surface of an assembly: the faces of cells that no cell of the same export covers, as a stream of polygons.
+// The surface of an assembly: the faces of cells that no cell of the same export covers, as a stream of
+// polygons.
 #pragma once
 
 #include "cells/hierarchy.h"
@@ -20,8 +21,8 @@ struct SurfaceFace
    std::span<const Vec3> corners; // counter-clockwise from outside, m
 };
 
-/// Streams every exposed face. With `material`, only cells of it exist; `insideMaterials` also shows faces between
-/// different materials. Nothing is expanded beyond a brick at a time.
+/// Streams every exposed face. With `material`, only cells of it exist; `insideMaterials` also shows faces
+/// between different materials. Nothing is expanded beyond a brick at a time.
 Status visitSurface(const Hierarchy &hierarchy, std::optional<MaterialIndex> material, bool betweenMaterials,
                     const std::function<void(const SurfaceFace &)> &visit, const Job &job);
 

@@ -5,8 +5,8 @@
 #include "core/job.h"
 #include "plugins/catalogue.h"
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -38,13 +38,14 @@ struct Mesh
    std::vector<std::array<std::int32_t, 3>> triangles;
 };
 
-/// Result of decomposing a whole model: parts in a fixed order, the cells each covers, and the cells left over.
+/// Result of decomposing a whole model: parts in a fixed order, the cells each covers, and the cells left
+/// over.
 struct Decomposition
 {
    std::vector<PartType> types;
    std::vector<Part> parts;
-   std::vector<Index> covered;  // world indices, by part
-   std::vector<Index> left;     // cells no part covers; only where the plugin says "partial"
+   std::vector<Index> covered; // world indices, by part
+   std::vector<Index> left;    // cells no part covers; only where the plugin says "partial"
 };
 
 /// A parts plugin's instance. Any thread.
@@ -58,10 +59,16 @@ public:
 
    const std::string &id() const;
    const std::vector<PartType> &types() const;
+   /// Ids of the lattices it fits; "*" fits any.
+   const std::vector<std::string> &lattices() const;
+   /// Whether cells may stay uncovered.
+   bool partial() const;
    int details() const;
-   /// Refuses, naming the first bad cell, when the plugin covers a cell twice or not at all, or returns bad poses.
+   /// Refuses, naming the first bad cell, when the plugin covers a cell twice or not at all, or returns bad
+   /// poses.
    Result<Decomposition> decompose(const Hierarchy &hierarchy, const Job &job) const;
-   /// Mesh of one part in its own frame, metres. detail 0 for thousands on screen, details()-1 for manufacture.
+   /// Mesh of one part in its own frame, metres. detail 0 for thousands on screen, details()-1 for
+   /// manufacture.
    Result<Mesh> mesh(int type, int length, int detail, double pitch, const Job &job) const;
 
    ~PartMaker();

@@ -40,11 +40,11 @@ struct Offer
 class Catalogue
 {
 public:
-   /// Looks in `folders` in order; within one, at <folder>/*/plugin.json and <folder>/*/*/plugin.json. Same id twice:
-   /// the higher version wins, then the earlier path; the loser is listed with the reason.
+   /// Looks in `folders` in order; within one, at <folder>/*/plugin.json and <folder>/*/*/plugin.json. Same
+   /// id twice: the higher version wins, then the earlier path; the loser is listed with the reason.
    static std::shared_ptr<const Catalogue> find(const std::vector<std::filesystem::path> &folders);
-   /// The folders searched by default: DIATOM_PLUGIN_PATH (colon list), $XDG_DATA_HOME/diatom/plugins/1, then beside
-   /// the executable: <bin>/../plugins and <bin>/../lib/diatom/plugins/1. Never the current directory.
+   /// The folders searched by default: DIATOM_PLUGIN_PATH (colon list), $XDG_DATA_HOME/diatom/plugins/1, then
+   /// beside the executable: <bin>/../plugins and <bin>/../lib/diatom/plugins/1. Never the current directory.
    static std::vector<std::filesystem::path> defaultFolders();
 
    const std::vector<Candidate> &candidates() const { return m_candidates; }
@@ -53,30 +53,33 @@ public:
    /// Null when nothing installed provides it.
    const Offer *offer(std::string_view interface, std::string_view id) const;
 
-   /// Loads the module if need be, checks and completes values, creates. `Table` is diatom_lattice, diatom_parts or
-   /// diatom_machine; solvers take a scene: see moduleTable().
+   /// Loads the module if need be, checks and completes values, creates. `Table` is diatom_lattice,
+   /// diatom_parts or diatom_machine; solvers take a scene: see moduleTable().
    template<typename Table>
    Result<std::shared_ptr<const Instance>> create(std::string_view interface, std::string_view id,
                                                   const Values &values, const Job &job) const
    {
-      return createWith(interface, id, values, job,
-                        [](const void *table, const diatom_call *call, const diatom_create *create, void **self) {
-                           return static_cast<const Table *>(table)->create(call, create, self);
-                        },
-                        [](const void *table) { return static_cast<const Table *>(table)->destroy; });
+      return createWith(
+          interface, id, values, job,
+          [](const void *table, const diatom_call *call, const diatom_create *create, void **self) {
+             return static_cast<const Table *>(table)->create(call, create, self);
+          },
+          [](const void *table) { return static_cast<const Table *>(table)->destroy; });
    }
 
-   using Create = std::function<std::int32_t(const void *table, const diatom_call *, const diatom_create *, void **)>;
+   using Create =
+       std::function<std::int32_t(const void *table, const diatom_call *, const diatom_create *, void **)>;
    using DestroyOf = std::function<Instance::Destroy(const void *table)>;
    /// create() for interfaces whose create() takes more than values (solvers): `create` makes the call.
    Result<std::shared_ptr<const Instance>> createWith(std::string_view interface, std::string_view id,
-                                                      const Values &values, const Job &job, const Create &create,
-                                                      const DestroyOf &destroy) const;
-   /// A call that needs no instance (capabilities, estimate): hands over the table and the completed create record.
-   Status callWith(std::string_view interface, std::string_view id, const Values &values, const char *function,
-                   const Job &job,
-                   const std::function<std::int32_t(const void *table, const diatom_call *, const diatom_create *)>
-                      &call) const;
+                                                      const Values &values, const Job &job,
+                                                      const Create &create, const DestroyOf &destroy) const;
+   /// A call that needs no instance (capabilities, estimate): hands over the table and the completed create
+   /// record.
+   Status callWith(std::string_view interface, std::string_view id, const Values &values,
+                   const char *function, const Job &job,
+                   const std::function<std::int32_t(const void *table, const diatom_call *,
+                                                    const diatom_create *)> &call) const;
 
    ~Catalogue();
 

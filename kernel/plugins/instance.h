@@ -14,19 +14,22 @@ namespace diatom {
 
 class Module; // a loaded library; never unloaded
 
-/// The guard: builds the diatom_call, saves and restores the floating-point mode and the locale, notes who is being
-/// called for a crash report, turns a status and the reported text into a Result. Used for every call into a plugin,
-/// also before there is an instance. `who` names the plugin in messages; `function` the table's entry.
+/// The guard: builds the diatom_call, saves and restores the floating-point mode and the locale, notes who is
+/// being called for a crash report, turns a status and the reported text into a Result. Used for every call
+/// into a plugin, also before there is an instance. `who` names the plugin in messages; `function` the
+/// table's entry.
 Status guardedCall(const std::string &who, const char *function, const Job &job,
                    const std::function<std::int32_t(const diatom_call *)> &call);
 
-/// One created thing: module, table and self. Destroyed with the last owner. Thread rules are the table's own.
+/// One created thing: module, table and self. Destroyed with the last owner. Thread rules are the table's
+/// own.
 class Instance
 {
 public:
    using Destroy = void (*)(void *self);
 
-   Instance(std::shared_ptr<const Module> module, std::string id, const void *table, void *self, Destroy destroy);
+   Instance(std::shared_ptr<const Module> module, std::string id, const void *table, void *self,
+            Destroy destroy);
    ~Instance();
    Instance(const Instance &) = delete;
    Instance &operator=(const Instance &) = delete;

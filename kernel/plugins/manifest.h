@@ -16,10 +16,10 @@ struct Parameter
    enum class Kind { number, integer, choice, text };
    std::string name;
    Kind kind = Kind::number;
-   std::string unit;              // "m", "rad", "s", "" = none
-   double number = 0;             // default, for number and integer
+   std::string unit;                // "m", "rad", "s", "" = none
+   double number = 0;               // default, for number and integer
    double minimum = 0, maximum = 0; // inclusive, for number and integer
-   std::string text;              // default, for choice and text
+   std::string text;                // default, for choice and text
    std::vector<std::string> choices;
    std::string help;
 };

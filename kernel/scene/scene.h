@@ -17,7 +17,8 @@
 
 namespace diatom {
 
-/// Owns what a diatom_scene points to. Cells are numbered in order of (x, y, z) index; not copyable because of pointers.
+/// Owns what a diatom_scene points to. Cells are numbered in order of (x, y, z) index; not copyable because
+/// of pointers.
 class Scene
 {
 public:

@@ -20,11 +20,11 @@ struct Source
 {
    Index cell;
    Waveform waveform = Waveform::sine;
-   double frequency = 10;  // Hz
-   double phase = 0;       // turns, 0 to 1
-   double duty = 0.5;      // of a square wave, 0 to 1
-   bool inverted = false;  // falling saw
-   double amplitude = 1;   // V peak to peak
+   double frequency = 10; // Hz
+   double phase = 0;      // turns, 0 to 1
+   double duty = 0.5;     // of a square wave, 0 to 1
+   bool inverted = false; // falling saw
+   double amplitude = 1;  // V peak to peak
    friend bool operator==(const Source &, const Source &) = default;
 };
 
@@ -47,22 +47,22 @@ struct Load
 struct Ground
 {
    bool present = false;
-   double height = 0;         // m: plane z = height that cells' lower faces rest on
-   double stiffness = 1000;   // N/m per cell
-   double damping = 0.1;      // N s/m per cell
-   double friction = 0.5;     // Coulomb coefficient; 0 = none
+   double height = 0;       // m: plane z = height that cells' lower faces rest on
+   double stiffness = 1000; // N/m per cell
+   double damping = 0.1;    // N s/m per cell
+   double friction = 0.5;   // Coulomb coefficient; 0 = none
    friend bool operator==(const Ground &, const Ground &) = default;
 };
 
 struct Setup
 {
    std::array<double, 3> gravity{0, 0, 0}; // m/s2
-   std::vector<Support> supports; // sorted by cell, each cell once
+   std::vector<Support> supports;          // sorted by cell, each cell once
    std::vector<Load> loads;
    std::vector<Source> sources;
    Ground ground;
-   double drag = 0;  // 1/s: slows all motion in proportion to mass; for settling
-   double step = 0;  // s the document asks for; 0 = the solver's stable step
+   double drag = 0; // 1/s: slows all motion in proportion to mass; for settling
+   double step = 0; // s the document asks for; 0 = the solver's stable step
    std::string solver = "org.diatom_cad.solver.bonds";
    Values solverValues;
    /// Effects forced on (true) or off (false); all others are decided by the planner.

@@ -1,5 +1,5 @@
-// What every C++ plugin needs: parameter values, host services as a class, exceptions into statuses, the module record.
-// Header-only; nothing here crosses the line to the host but the C tables of abi/.
+// What every C++ plugin needs: parameter values, host services as a class, exceptions into statuses, the
+// module record. Header-only; nothing here crosses the line to the host but the C tables of abi/.
 #pragma once
 
 #include <diatom/abi/core.h>
@@ -31,7 +31,10 @@ class Call
 public:
    explicit Call(const diatom_call *call) : m_call(call) {}
 
-   void report(std::int32_t level, const std::string &text) const { m_call->report(m_call, level, text.c_str()); }
+   void report(std::int32_t level, const std::string &text) const
+   {
+      m_call->report(m_call, level, text.c_str());
+   }
    bool cancelled() const { return m_call->cancelled(m_call) != 0; }
    void progress(double fraction, const char *what) const { m_call->progress(m_call, fraction, what); }
    /// body(begin, end) over pieces of `grain`; must not throw.
@@ -39,9 +42,11 @@ public:
    void parallelFor(std::int64_t count, std::int64_t grain, Body &body) const
    {
       m_call->parallel_for(
-         m_call, count, grain,
-         [](void *context, std::int64_t begin, std::int64_t end) { (*static_cast<Body *>(context))(begin, end); },
-         &body);
+          m_call, count, grain,
+          [](void *context, std::int64_t begin, std::int64_t end) {
+             (*static_cast<Body *>(context))(begin, end);
+          },
+          &body);
    }
    const diatom_call *raw() const { return m_call; }
 
@@ -97,6 +102,6 @@ std::int32_t guarded(const diatom_call *call, Body &&body) noexcept
 /// Defines the module's one exported symbol; `get` is a function from interface id to table.
 #define DIATOM_MODULE(get)                                                                                   \
    extern "C" __attribute__((visibility("default"))) const diatom_module diatom_module_v1 = {                \
-      sizeof(diatom_module), DIATOM_ABI_MINOR, 0, diatom_plugin_metadata, get};
+       sizeof(diatom_module), DIATOM_ABI_MINOR, 0, diatom_plugin_metadata, get};
 
 #include DIATOM_PLUGIN_METADATA

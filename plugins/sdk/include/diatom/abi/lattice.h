@@ -1,5 +1,5 @@
-/* Interface "diatom.lattice/1": a lattice is data, not calls. The plugin hands over one periodic motif; the kernel
- * computes positions, inverses, neighbours and shapes from it. */
+/* Interface "diatom.lattice/1": a lattice is data, not calls. The plugin hands over one periodic motif; the
+ * kernel computes positions, inverses, neighbours and shapes from it. */
 #ifndef DIATOM_ABI_LATTICE_H
 #define DIATOM_ABI_LATTICE_H
 
@@ -15,15 +15,16 @@ extern "C" {
 #define DIATOM_CONTACT_EDGE 1
 #define DIATOM_CONTACT_VERTEX 2
 
-/* Lengths in lattice units (cells have unit edges unless the lattice says otherwise); the host applies pitch and
- * aspect to sites and shapes alike. Plugin memory, immutable until destroy.
+/* Lengths in lattice units (cells have unit edges unless the lattice says otherwise); the host applies pitch
+ * and aspect to sites and shapes alike. Plugin memory, immutable until destroy.
  *
  * Site of index c: s = (c mod period), floor modulo, numbered (sx * period[1] + sy) * period[2] + sz.
  * Position of index c: basis^T c + offset[s]. */
-typedef struct diatom_motif {
+typedef struct diatom_motif
+{
    int64_t size;
    int32_t period[3];
-   int32_t sites; /* product of period */
+   int32_t sites;             /* product of period */
    const double *basis;       /* 9: the step per i, then per j, then per k */
    const double *offset;      /* 3 per site */
    const double *orientation; /* 4 per site: unit quaternion w x y z, cell frame to lattice frame */
@@ -46,8 +47,8 @@ typedef struct diatom_motif {
    const int32_t *link_start;   /* sites + 1 */
    const int32_t *link_offset;  /* 3 each: index of the neighbour minus index of the cell */
    const int32_t *link_contact; /* DIATOM_CONTACT_... */
-   const int32_t *link_feature; /* number of the face, edge or vertex within the shape; edges in order of first
-                                   appearance when walking the faces */
+   const int32_t *link_feature; /* number of the face, edge or vertex within the shape; edges in order of
+                                   first appearance when walking the faces */
    const int32_t *link_joined;  /* 1 where the lattice's own connection holds the two cells together */
 
    /* Super-cells: runs of cells that are placed as one (bricks). Null when the lattice has none. */
@@ -56,7 +57,8 @@ typedef struct diatom_motif {
    int32_t supercell_default;     /* length a new run has */
 } diatom_motif;
 
-typedef struct diatom_lattice {
+typedef struct diatom_lattice
+{
    int32_t (*create)(const diatom_call *call, const diatom_create *create, void **self); /* [any] */
    int32_t (*motif)(void *self, const diatom_call *call, const diatom_motif **motif);    /* [any] */
    void (*destroy)(void *self);                                                          /* [any] */
