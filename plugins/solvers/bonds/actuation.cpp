@@ -133,8 +133,10 @@ double Actuation::energyChange(const Assembly &assembly, const State &state, con
    double change = 0;
    for (std::size_t i = 0; i < m_bonds.size(); ++i) {
       const std::int64_t bond = m_bonds[i];
-      const Vec3 d = rest.separation(bond), phi = rest.turn(bond), oldD = m_accepted[i][0], oldPhi = m_accepted[i][1];
-      if (d.x == oldD.x && d.y == oldD.y && d.z == oldD.z && phi.x == oldPhi.x && phi.y == oldPhi.y && phi.z == oldPhi.z)
+      const Vec3 d = rest.separation(bond), phi = rest.turn(bond), oldD = m_accepted[i][0],
+                 oldPhi = m_accepted[i][1];
+      if (d.x == oldD.x && d.y == oldD.y && d.z == oldD.z && phi.x == oldPhi.x && phi.y == oldPhi.y &&
+          phi.z == oldPhi.z)
          continue;
       const Relation r = relate(endsOf(assembly, state, bond));
       const BondConstants &k = assembly.constants[bond];

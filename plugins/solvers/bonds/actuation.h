@@ -32,8 +32,8 @@ public:
    void setSources(const sdk::Channel &sources);
 
    void setRest(double time, RestShape &rest) const;
-   /// Elastic energy (J) that changing the rest shape from the accepted one to `rest` would add, the cells held where they
-   /// are: the actuators' work.
+   /// Elastic energy (J) that changing the rest shape from the accepted one to `rest` would add, the cells
+   /// held where they are: the actuators' work.
    double energyChange(const Assembly &assembly, const State &state, const RestShape &rest) const;
    void accept(const RestShape &rest);
    const RestShape &shape() const { return m_initial; }

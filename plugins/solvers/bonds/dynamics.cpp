@@ -256,8 +256,8 @@ void Dynamics::bondForces(const sdk::Call &call, double weight)
       m_dissipated += power * weight;
 }
 
-// The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells are before and
-// after the step: second order, and exact for a jump while nothing moves.
+// The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
+// are before and after the step: second order, and exact for a jump while nothing moves.
 void Dynamics::step(const sdk::Call &call, double time, double dt)
 {
    const bool actuated = m_actuation.active();
