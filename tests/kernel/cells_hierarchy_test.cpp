@@ -64,7 +64,10 @@ public:
       return model;
    }
    int below(int n) { return static_cast<int>(m_random() % static_cast<unsigned>(n)); }
-   double uniform(double low, double high) { return low + (high - low) * (m_random() / 4294967296.0); }
+   double uniform(double low, double high)
+   {
+      return low + (high - low) * (static_cast<double>(m_random()) / 4294967296.0);
+   }
    Index index(int spread) { return {within(spread), within(spread), within(spread)}; }
 
 private:
