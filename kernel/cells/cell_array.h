@@ -2,19 +2,19 @@
 // version of.
 #pragma once
 
+#include "cells/block.h"
 #include "cells/cell.h"
 #include "core/hash.h"
 #include "core/index.h"
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <vector>
 
 namespace diatom {
 
 namespace detail {
-struct Node;
+struct Brick;
 }
 
 /// A value: copying costs a pointer, copies share everything until one of them changes. Different copies may
@@ -23,15 +23,15 @@ class CellArray
 {
 public:
    Cell at(Index i) const;
-   bool empty() const { return count() == 0; }
-   /// Cells that are not empty.
+   bool empty() const;
+   /// Cells that are not empty; stays at 2^64 - 1 beyond.
    std::uint64_t count() const;
    /// Tight: grows and shrinks with the content.
    Box bounds() const;
    /// Cells per material, indexed by material; element 0 is 0.
    std::vector<std::uint64_t> countByMaterial() const;
 
-   /// Index must be in range (core/index.h). Setting an empty cell erases.
+   /// Out of range (core/index.h) does nothing. Setting an empty cell erases.
    void set(Index i, Cell cell);
    /// Sets every cell of the box; whole bricks and larger blocks are stored as one value.
    void fill(const Box &box, Cell cell);
@@ -52,6 +52,8 @@ public:
    void hash(Hasher &hasher) const;
    /// Bytes held, shared ones counted fully.
    std::uint64_t bytes() const;
+   /// The tree itself, for the kernel's own queries (cells/tree.h).
+   const detail::Block &root() const { return m_root; }
 
    /// Fast repeated access near one place: keeps the last brick. Valid while the array is not changed.
    class Reader
@@ -62,13 +64,15 @@ public:
 
    private:
       const CellArray *m_array;
-      const detail::Node *m_leaf = nullptr;
-      Index m_origin;
+      const detail::Brick *m_brick = nullptr; // null: m_value everywhere in the block
+      std::uint32_t m_value = 0;
+      int m_level = 0;
+      Index m_inside; // any index of the block
       bool m_known = false;
    };
 
 private:
-   std::shared_ptr<const detail::Node> m_root; // null = empty
+   detail::Block m_root; // an inner node of the tree, or empty
 };
 
 } // namespace diatom

@@ -1,0 +1,133 @@
+// Materials between Material and JSON.
+#include "document/format.h"
+
+namespace diatom {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char *kPortNames[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
+constexpr std::uint8_t kAllPorts = 0x3f;
+
+ordered_json bondsJson(const BondConstants &bonds)
+{
+   return {{"axial_N_m", bonds.axial},
+           {"shear_N_m", bonds.shear},
+           {"bending_N_m_rad", bonds.bending},
+           {"torsion_N_m_rad", bonds.torsion}};
+}
+
+std::array<double, 3> stiffness3(const JsonPlace &place)
+{
+   std::array<double, 3> values{};
+   if (place.array(3))
+      for (std::size_t a = 0; a < 3; ++a)
+         values[a] = place.at(a).number(0);
+   return values;
+}
+
+BondConstants readBonds(const JsonPlace &place)
+{
+   BondConstants bonds;
+   if (!place.object())
+      return bonds;
+   place.known({"axial_N_m", "shear_N_m", "bending_N_m_rad", "torsion_N_m_rad"});
+   bonds.axial = stiffness3(place.at("axial_N_m"));
+   const auto shear = place.at("shear_N_m");
+   if (shear.array(3))
+      for (std::size_t a = 0; a < 3; ++a)
+         bonds.shear[a] = stiffness3(shear.at(a));
+   bonds.bending = stiffness3(place.at("bending_N_m_rad"));
+   bonds.torsion = stiffness3(place.at("torsion_N_m_rad"));
+   return bonds;
+}
+
+ordered_json actuationJson(const Actuation &actuation)
+{
+   static constexpr const char *kModes[] = {"axial", "shear", "bending", "torsion"};
+   return {{"mode", kModes[static_cast<std::size_t>(actuation.mode)]},
+           {"axis", std::string(1, "xyz"[actuation.axis % 3])},
+           {"strain_per_V", actuation.strainPerVolt},
+           {"axis_from_wires", actuation.axisFromWires}};
+}
+
+Actuation readActuation(const JsonPlace &place)
+{
+   Actuation actuation;
+   if (!place.object())
+      return actuation;
+   place.known({"mode", "axis", "strain_per_V", "axis_from_wires"});
+   if (place.has("mode"))
+      actuation.mode = static_cast<Actuation::Mode>(place.at("mode").word({"axial", "shear", "bending", "torsion"}));
+   if (place.has("axis"))
+      actuation.axis = static_cast<int>(place.at("axis").word({"x", "y", "z"}));
+   actuation.strainPerVolt = place.numberOr("strain_per_V", 0, -10, 10);
+   actuation.axisFromWires = place.booleanOr("axis_from_wires", false);
+   return actuation;
+}
+
+std::uint8_t readPorts(const JsonPlace &place)
+{
+   unsigned ports = 0;
+   for (std::size_t i = 0; i < place.size() && place.ok(); ++i)
+      ports |= 1U << place.at(i).word({"-x", "+x", "-y", "+y", "-z", "+z"});
+   return static_cast<std::uint8_t>(ports);
+}
+
+} // namespace
+
+ordered_json materialJson(const Material &material)
+{
+   static constexpr const char *kRoles[] = {"insulator", "conductor", "source", "actuator"};
+   ordered_json json = {{"id", material.id},
+                        {"name", material.name},
+                        {"color", colorText(material.color)},
+                        {"density_kg_m3", material.density},
+                        {"youngs_modulus_Pa", material.youngsModulus},
+                        {"poisson_ratio", material.poissonRatio},
+                        {"damping_ratio", material.dampingRatio},
+                        {"role", kRoles[static_cast<std::size_t>(material.role)]}};
+   if (material.bonds)
+      json["bonds"] = bondsJson(*material.bonds);
+   if (material.ports != kAllPorts) {
+      auto ports = ordered_json::array();
+      for (unsigned port = 0; port < 6; ++port)
+         if (material.ports & (1U << port))
+            ports.push_back(kPortNames[port]);
+      json["ports"] = std::move(ports);
+   }
+   if (material.actuation != Actuation{})
+      json["actuation"] = actuationJson(material.actuation);
+   return json;
+}
+
+Material readMaterial(const JsonPlace &place)
+{
+   Material material;
+   if (!place.object())
+      return material;
+   place.known({"id", "name", "color", "density_kg_m3", "youngs_modulus_Pa", "poisson_ratio", "damping_ratio", "role",
+                "bonds", "ports", "actuation"});
+   material.id = place.at("id").identifier();
+   material.name = place.textOr("name", material.id);
+   if (place.has("color"))
+      material.color = place.at("color").color();
+   // Zero mass or stiffness would make infinite frequencies and NaN.
+   material.density = place.numberOr("density_kg_m3", material.density, 1e-9, 1e9);
+   material.youngsModulus = place.numberOr("youngs_modulus_Pa", material.youngsModulus, 1e-6, 1e15);
+   material.poissonRatio = place.numberOr("poisson_ratio", material.poissonRatio, -0.999, 0.4999);
+   material.dampingRatio = place.numberOr("damping_ratio", 0, 0, 1000);
+   if (place.has("bonds"))
+      material.bonds = readBonds(place.at("bonds"));
+   if (place.has("role"))
+      material.role =
+         static_cast<ElectricalRole>(place.at("role").word({"insulator", "conductor", "source", "actuator"}));
+   if (place.has("ports"))
+      material.ports = readPorts(place.at("ports"));
+   if (place.has("actuation"))
+      material.actuation = readActuation(place.at("actuation"));
+   return material;
+}
+
+} // namespace diatom

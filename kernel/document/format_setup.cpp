@@ -1,0 +1,208 @@
+// The simulation's set-up between Setup and JSON.
+#include "document/format.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace diatom {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::uint8_t kAllFixed = 0x3f;
+constexpr const char *kFreedoms[] = {"x", "y", "z", "rx", "ry", "rz"};
+constexpr const char *kWaveforms[] = {"sine", "square", "saw", "triangle"};
+
+template<typename Item, typename Read>
+std::vector<Item> readList(const JsonPlace &list, Read read)
+{
+   std::vector<Item> items;
+   for (std::size_t i = 0; i < list.size() && list.ok(); ++i)
+      items.push_back(read(list.at(i)));
+   return items;
+}
+
+template<typename Item>
+void refuseTwice(const std::vector<Item> &items, const JsonPlace &place, const char *what)
+{
+   std::set<Index> seen;
+   for (const auto &item : items)
+      if (!seen.insert(item.cell).second)
+         place.fail(fmt::format("cell [{}, {}, {}] has two {}; remove one of them", item.cell.x, item.cell.y, item.cell.z,
+                                what));
+}
+
+Support readSupport(const JsonPlace &place)
+{
+   place.known({"cell", "fixed"});
+   return {place.at("cell").index(), place.has("fixed") ? readFixed(place.at("fixed")) : kAllFixed};
+}
+
+} // namespace
+
+ordered_json indexJson(Index index) { return ordered_json::array({index.x, index.y, index.z}); }
+
+ordered_json fixedJson(std::uint8_t fixed)
+{
+   auto names = ordered_json::array();
+   for (unsigned bit = 0; bit < 6; ++bit)
+      if (fixed & (1U << bit))
+         names.push_back(kFreedoms[bit]);
+   return names;
+}
+
+std::uint8_t readFixed(const JsonPlace &place)
+{
+   unsigned fixed = 0;
+   for (std::size_t i = 0; i < place.size() && place.ok(); ++i)
+      fixed |= 1U << place.at(i).word({"x", "y", "z", "rx", "ry", "rz"});
+   return static_cast<std::uint8_t>(fixed);
+}
+
+ordered_json sourceJson(const Source &source)
+{
+   return {{"cell", indexJson(source.cell)},
+           {"waveform", kWaveforms[static_cast<std::size_t>(source.waveform)]},
+           {"frequency_Hz", source.frequency},
+           {"phase", source.phase},
+           {"duty", source.duty},
+           {"inverted", source.inverted},
+           {"amplitude_V", source.amplitude}};
+}
+
+Source readSource(const JsonPlace &place)
+{
+   Source source;
+   if (!place.object())
+      return source;
+   place.known({"cell", "waveform", "frequency_Hz", "phase", "duty", "inverted", "amplitude_V"});
+   source.cell = place.at("cell").index();
+   if (place.has("waveform"))
+      source.waveform = static_cast<Waveform>(place.at("waveform").word({"sine", "square", "saw", "triangle"}));
+   source.frequency = place.numberOr("frequency_Hz", source.frequency, 0, 1e9);
+   source.phase = place.numberOr("phase", source.phase, 0, 1);
+   source.duty = place.numberOr("duty", source.duty, 0, 1);
+   source.inverted = place.booleanOr("inverted", false);
+   source.amplitude = place.numberOr("amplitude_V", source.amplitude, -1e6, 1e6);
+   return source;
+}
+
+ordered_json groundJson(const Ground &ground)
+{
+   return {{"present", ground.present},
+           {"height_m", ground.height},
+           {"stiffness_N_m", ground.stiffness},
+           {"damping_N_s_m", ground.damping},
+           {"friction", ground.friction}};
+}
+
+Ground readGround(const JsonPlace &place, Ground ground)
+{
+   if (!place.object())
+      return ground;
+   place.known({"present", "height_m", "stiffness_N_m", "damping_N_s_m", "friction"});
+   ground.present = place.booleanOr("present", true);
+   ground.height = place.numberOr("height_m", ground.height, -1e9, 1e9);
+   ground.stiffness = place.numberOr("stiffness_N_m", ground.stiffness, 0, 1e15);
+   ground.damping = place.numberOr("damping_N_s_m", ground.damping, 0, 1e15);
+   ground.friction = place.numberOr("friction", ground.friction, 0, 1000);
+   return ground;
+}
+
+ordered_json loadJson(const Load &load)
+{
+   return {{"cell", indexJson(load.cell)}, {"force_N", load.force}, {"moment_N_m", load.moment}};
+}
+
+Load readLoad(const JsonPlace &place)
+{
+   Load load;
+   if (!place.object())
+      return load;
+   place.known({"cell", "force_N", "moment_N_m"});
+   load.cell = place.at("cell").index();
+   if (place.has("force_N"))
+      load.force = place.at("force_N").numbers3();
+   if (place.has("moment_N_m"))
+      load.moment = place.at("moment_N_m").numbers3();
+   return load;
+}
+
+ordered_json valuesJson(const Values &values)
+{
+   auto json = ordered_json::object();
+   for (const auto &[name, value] : values)
+      std::visit([&, &key = name](const auto &v) { json[key] = v; }, value);
+   return json;
+}
+
+ordered_json setupJson(const Setup &setup)
+{
+   ordered_json json = {{"gravity_m_s2", setup.gravity}};
+   for (const auto &support : setup.supports) {
+      ordered_json entry = {{"cell", indexJson(support.cell)}};
+      if (support.fixed != kAllFixed)
+         entry["fixed"] = fixedJson(support.fixed);
+      json["supports"].push_back(std::move(entry));
+   }
+   for (const auto &load : setup.loads)
+      json["loads"].push_back(loadJson(load));
+   for (const auto &source : setup.sources)
+      json["sources"].push_back(sourceJson(source));
+   if (setup.ground != Ground{})
+      json["ground"] = groundJson(setup.ground);
+   json["drag_1_s"] = setup.drag;
+   json["step_s"] = setup.step;
+   json["solver"] = {{"id", setup.solver}, {"values", valuesJson(setup.solverValues)}};
+   if (!setup.effects.empty())
+      json["effects"] = setup.effects;
+   return json;
+}
+
+void orderSetup(Setup &setup, const JsonPlace &place)
+{
+   refuseTwice(setup.supports, place, "supports");
+   refuseTwice(setup.loads, place, "loads");
+   refuseTwice(setup.sources, place, "sources");
+   std::sort(setup.supports.begin(), setup.supports.end(),
+             [](const Support &a, const Support &b) { return a.cell < b.cell; });
+}
+
+Setup readSetup(const JsonPlace &place)
+{
+   Setup setup;
+   if (!place.object())
+      return setup;
+   place.known({"gravity_m_s2", "supports", "loads", "sources", "ground", "drag_1_s", "step_s", "solver", "effects"});
+   if (place.has("gravity_m_s2"))
+      setup.gravity = place.at("gravity_m_s2").numbers3();
+   if (place.has("supports"))
+      setup.supports = readList<Support>(place.at("supports"), readSupport);
+   if (place.has("loads"))
+      setup.loads = readList<Load>(place.at("loads"), readLoad);
+   if (place.has("sources"))
+      setup.sources = readList<Source>(place.at("sources"), readSource);
+   if (place.has("ground"))
+      setup.ground = readGround(place.at("ground"), {});
+   setup.drag = place.numberOr("drag_1_s", 0, 0, 1e9);
+   setup.step = place.numberOr("step_s", 0, 0, 1e6);
+   if (place.has("solver")) {
+      const auto solver = place.at("solver");
+      solver.known({"id", "values"});
+      setup.solver = solver.at("id").identifier();
+      if (solver.has("values"))
+         setup.solverValues = solver.at("values").values();
+   }
+   if (place.has("effects") && place.at("effects").object()) {
+      const auto effects = place.at("effects");
+      for (const auto &[name, forced] : effects.json().items())
+         setup.effects[name] = effects.at(name).boolean();
+   }
+   orderSetup(setup, place);
+   return setup;
+}
+
+} // namespace diatom
