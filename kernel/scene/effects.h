@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace diatom {
@@ -16,13 +17,19 @@ struct Effect
 {
    std::string name; // "gravity", "damping", "actuation", ...
    bool on = false;
-   bool forced = false;          // by the user, against the planner
+   bool forced = false;          // the user said on or off, whatever the planner found
    std::string why;              // one sentence
    std::vector<Index> evidence;  // up to a few cells
    std::optional<double> costNs; // per cell-step, where measured
 };
 
-/// The effects table applied to a scene, in the table's order.
+/// The effects table applied to a scene, in the table's order. An effect that this version cannot do is never
+/// on, even when asked for: `forced` then says that it was, and `why` that it cannot be had.
 std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, const Networks &networks);
+
+/// Names of the table's effects, in order.
+std::vector<std::string> effectNames();
+/// Whether a solver is told of the effect by name; the others are settled while the scene is built.
+bool effectIsForSolver(std::string_view name);
 
 } // namespace diatom

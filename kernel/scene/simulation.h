@@ -18,8 +18,9 @@ struct Energy
    double kinetic = 0, elastic = 0, gravity = 0, contact = 0; // J, stored
    double dissipated = 0; // J, taken out by damping, drag and friction since the start
    double work = 0;       // J, put in by actuators, loads and supports since the start
-   /// (stored now + dissipated - work - stored at the start) over the largest stored energy seen; 0 when all
-   /// is 0.
+   /// (stored now + dissipated - work - stored at the start) over the most energy seen in play, which is
+   /// kinetic + elastic + contact + the change of gravity's; 0 when all is 0. Looked at after each batch of
+   /// steps.
    double drift = 0;
 };
 
@@ -63,6 +64,11 @@ public:
    /// One named channel of one cell: x y z (displacement, m), vx vy vz, rx ry rz (rotation vector, rad),
    /// strain.
    Result<double> probe(std::int64_t cell, const std::string &channel, const Job &job) const;
+   /// All rows of one of the solver's own outputs ("velocity", "strain", ...), stride numbers per cell.
+   Result<std::vector<double>> output(const std::string &name, const Job &job) const;
+
+   /// The channels probe() knows, with their units.
+   static std::vector<std::pair<std::string, std::string>> probeChannels();
 
 private:
    Simulation();

@@ -1,0 +1,35 @@
+// What is wrong with a design before anything is simulated: supports, loads and sources where no cell is,
+// loose bodies.
+#pragma once
+
+#include "cells/hierarchy.h"
+#include "core/job.h"
+#include "core/result.h"
+#include "scene/networks.h"
+#include "scene/setup.h"
+
+#include <string>
+#include <vector>
+
+namespace diatom {
+
+/// Cells that hang together through the lattice's own connections; each body's cells sorted, bodies by
+/// smallest cell.
+using Bodies = std::vector<std::vector<Index>>;
+
+/// Errors: more than `limit` cells, cancelled.
+Result<Bodies> findBodies(const Hierarchy &hierarchy, const Job &job, std::int64_t limit = 20'000'000);
+
+/// Errors "support-without-cell", "load-without-cell", "source-without-cell" and "repeated-support".
+std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &setup);
+
+/// Warnings "floating-body": bodies that fall for ever, as there is gravity but neither ground nor a support
+/// on them.
+std::vector<Problem> findFloatingBodies(const Bodies &bodies, const Setup &setup);
+
+/// "(1, 2, 3)".
+std::string cellText(Index cell);
+/// Up to four cells: "(1, 2, 3), (4, 5, 6) and 7 more".
+std::string cellsText(const std::vector<Index> &cells);
+
+} // namespace diatom
