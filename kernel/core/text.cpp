@@ -12,6 +12,13 @@ std::string numberText(double value)
    return {buffer, end};
 }
 
+std::string singleText(float value)
+{
+   char buffer[32];
+   const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+   return {buffer, end};
+}
+
 std::string fixedText(double value, int decimals)
 {
    char buffer[400];

@@ -10,6 +10,8 @@ namespace diatom {
 
 /// Shortest text that reads back as the same double; "nan", "inf", "-inf" for the rest.
 std::string numberText(double value);
+/// Shortest text that reads back as the same single-precision number.
+std::string singleText(float value);
 /// Exactly `decimals` digits after the point; never "-0.000".
 std::string fixedText(double value, int decimals);
 /// The whole of `text` as a finite number, else nothing.

@@ -26,6 +26,7 @@ struct StlOptions
 struct StlReport
 {
    std::filesystem::path file;
+   std::optional<MaterialIndex> material; // when the file holds only this one
    std::uint64_t triangles = 0, bytes = 0;
    std::uint64_t cells = 0, parts = 0;
 };

@@ -5,8 +5,8 @@
 #include "core/job.h"
 #include "plugins/catalogue.h"
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,6 +59,10 @@ public:
 
    const std::string &id() const;
    const std::vector<PartType> &types() const;
+   /// Ids of the lattices it fits; "*" fits any.
+   const std::vector<std::string> &lattices() const;
+   /// Whether cells may stay uncovered.
+   bool partial() const;
    int details() const;
    /// Refuses, naming the first bad cell, when the plugin covers a cell twice or not at all, or returns bad
    /// poses.

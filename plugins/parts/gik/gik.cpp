@@ -1,0 +1,132 @@
+// GIK micro-LEGO: a run of L cells is one upright plate with slots at every cell centre, cut from above and
+// below, into which the crossing plates of the next layers go. Measures: DMDesign's part, mm at its pitch
+// of 1.27 mm.
+#include <diatom/parts.hpp>
+
+#include <cmath>
+
+using namespace diatom::sdk;
+
+namespace {
+
+constexpr double kPitch = 1.27;      // mm, one lattice unit
+constexpr double kInset = 0.0635;    // each end stops short of the cell wall
+constexpr double kThickness = 0.254; // of the plate, and width of a slot: 0.2 pitch
+constexpr double kHeight = 3.175;
+constexpr double kSlotDepth = 0.7744;
+constexpr int kLongest = 1'000'000; // a plate of 10^6 cells has 3 * 10^7 triangles
+
+/// Grid of the plate's outline: columns alternate solid, slot, solid, .. ; the middle one of three bands is
+/// solid.
+struct Outline
+{
+   std::vector<double> x;
+   std::array<double, 4> z{-kHeight / 2, -kHeight / 2 + kSlotDepth, kHeight / 2 - kSlotDepth, kHeight / 2};
+
+   explicit Outline(int length)
+   {
+      x.push_back(-kPitch / 2 + kInset);
+      for (int cell = 0; cell < length; ++cell) {
+         x.push_back(cell * kPitch - kThickness / 2);
+         x.push_back(cell * kPitch + kThickness / 2);
+      }
+      x.push_back((length - 1) * kPitch + kPitch / 2 - kInset);
+   }
+   int columns() const { return static_cast<int>(x.size()) - 1; }
+   bool solid(int column, int band) const
+   {
+      return column >= 0 && column < columns() && band >= 0 && band < 3 && (band == 1 || column % 2 == 0);
+   }
+};
+
+/// Frame: origin in the first cell's centre, run along +x, plate in the x-z plane.
+PartMesh plate(const MeshRequest &request)
+{
+   if (request.length > kLongest)
+      throw Failure(DIATOM_LIMIT,
+                    "a brick of " + std::to_string(request.length) + " cells is too long to mesh");
+   const Outline outline(request.length);
+   const double scale = request.pitch / kPitch;
+   PartMesh mesh;
+   for (const double x : outline.x)
+      for (const double z : outline.z)
+         for (const double y : {-kThickness / 2, kThickness / 2})
+            mesh.vertex(x * scale, y * scale, z * scale);
+   const auto corner = [](int column, int band, int back) { return (column * 4 + band) * 2 + back; };
+   for (int i = 0; i < outline.columns(); ++i)
+      for (int k = 0; k < 3; ++k) {
+         if (!outline.solid(i, k))
+            continue;
+         mesh.quad(corner(i, k, 0), corner(i + 1, k, 0), corner(i + 1, k + 1, 0), corner(i, k + 1, 0));
+         mesh.quad(corner(i, k, 1), corner(i, k + 1, 1), corner(i + 1, k + 1, 1), corner(i + 1, k, 1));
+         if (!outline.solid(i - 1, k))
+            mesh.quad(corner(i, k, 0), corner(i, k + 1, 0), corner(i, k + 1, 1), corner(i, k, 1));
+         if (!outline.solid(i + 1, k))
+            mesh.quad(corner(i + 1, k, 0), corner(i + 1, k, 1), corner(i + 1, k + 1, 1),
+                      corner(i + 1, k + 1, 0));
+         if (!outline.solid(i, k - 1))
+            mesh.quad(corner(i, k, 0), corner(i, k, 1), corner(i + 1, k, 1), corner(i + 1, k, 0));
+         if (!outline.solid(i, k + 1))
+            mesh.quad(corner(i, k + 1, 0), corner(i + 1, k + 1, 0), corner(i + 1, k + 1, 1),
+                      corner(i, k + 1, 1));
+      }
+   return mesh;
+}
+
+std::string where(const diatom_cells &cells, std::int64_t cell)
+{
+   const std::int32_t *index = cells.index + 3 * cell;
+   return std::to_string(index[0]) + " " + std::to_string(index[1]) + " " + std::to_string(index[2]);
+}
+
+/// Cells of each run in their order, runs by their first cell's place.
+std::vector<std::vector<std::int64_t>> runs(const Call &call, const diatom_cells &cells)
+{
+   std::vector<std::vector<std::int64_t>> of(static_cast<std::size_t>(cells.count));
+   for (std::int64_t i = 0; i < cells.count; ++i) {
+      pollEvery(call, i);
+      auto &run = of[static_cast<std::size_t>(cells.supercell[i])];
+      const auto place = static_cast<std::size_t>(cells.place[i]);
+      if (run.size() <= place)
+         run.resize(place + 1, -1);
+      run[place] = i;
+   }
+   return of;
+}
+
+/// Even layers (site 0) run along +y, odd ones along +x: dmdesign.md 1.3, the deployed rule. A plate turned
+/// within its layer could not be slotted, so a cell's own orientation has no say.
+Wxyz layerOrientation(std::int32_t site)
+{
+   return site == 0 ? Wxyz{std::sqrt(0.5), 0, 0, std::sqrt(0.5)} : Wxyz{1, 0, 0, 0};
+}
+
+void bricks(const Call &call, const diatom_cells &cells, PartList &parts)
+{
+   for (const auto &run : runs(call, cells)) {
+      if (run.empty())
+         continue;
+      const std::int64_t first = run.front();
+      for (const std::int64_t cell : run)
+         if (cells.material[cell] != cells.material[first])
+            throw Failure(DIATOM_BAD_INPUT, "the brick that starts at cell " + where(cells, first) +
+                                                " has a second material at cell " + where(cells, cell) +
+                                                "; a brick is made of one");
+      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[first], cellPosition(cells, first),
+                layerOrientation(cells.site[first]), run);
+   }
+}
+
+PartSet gik(const Values &)
+{
+   PartSet set;
+   set.kinds = {{"brick", "GIK brick", 1}};
+   set.lattices = {"org.diatom_cad.lattice.gik"};
+   set.mesh = plate;
+   set.decompose = bricks;
+   return set;
+}
+
+} // namespace
+
+DIATOM_PARTS(gik)
