@@ -48,7 +48,7 @@ Rgba shaded(Rgba color, const Vec3 &normal)
 std::vector<Line> baseGrid(const Lattice &lattice, const Box &content, Rgba color)
 {
    constexpr std::int32_t margin = 6, widest = 48;
-   const auto range = [](std::int32_t low, std::int32_t high) {
+   const auto range = [&](std::int32_t low, std::int32_t high) {
       const std::int32_t middle = low + (high - low) / 2;
       const std::int32_t half = std::min(widest, (high - low) / 2 + margin);
       return std::pair{std::max(-kIndexLimit, middle - half), std::min(kIndexLimit, middle + half)};
