@@ -59,6 +59,8 @@ public:
                                                       const Job &job);
 
    const LatticeSpec &spec() const { return m_spec; }
+   Lattice(const Lattice &) = delete;
+   Lattice &operator=(const Lattice &) = delete;
    std::array<int, 3> period() const { return m_period; }
    int sites() const { return static_cast<int>(m_offset.size()); }
    int site(Index i) const
@@ -108,6 +110,10 @@ public:
    /// Orientation index a cell of `local` with orientation index o has after place(): o is a rotation number
    /// of the cell's shape.
    int turnedOrientation(Index local, int rotation, int orientation) const;
+   /// The same where it matters which of several sites, differently turned, the composite is put at. The form
+   /// above takes the first site that the rotation allows, which for the built-in lattices is always the same
+   /// answer.
+   int turnedOrientation(Index origin, Index local, int rotation, int orientation) const;
 
    bool hasSupercells() const { return !m_supercellStep.empty(); }
    /// Index step along a run (brick) that starts at a cell of this site.
@@ -131,12 +137,28 @@ private:
    std::vector<Quat> m_orientation;
    std::vector<int> m_shapeOf;
    std::vector<Shape> m_shapes;
+   std::vector<std::vector<int>>
+       m_shapeCompose; // per shape: rotation number of "first b, then a" at a * count + b
    std::vector<std::vector<Vec3>> m_corners;
    std::vector<std::vector<Link>> m_links;
+   std::vector<std::vector<int>> m_faceLink; // per site and face: number of the link through it, or -1
+
+   // Inverse of the basis times the period, how far from the rounded value the nearest cell may lie, per axis
+   // and in periods, and the squared distance below which two cells are equally near.
+   Mat3 m_periodInverse = Mat3::Identity();
+   std::array<double, 3> m_search{0.5, 0.5, 0.5};
+   double m_tie = 0;
+
    std::vector<Quat> m_rotations;
+   std::vector<Mat3> m_rotationMatrix;
    std::vector<int> m_compose, m_inverseOf;
    // Index maps of rotations that are integer and affine: one matrix per rotation, when every site allows it.
    std::vector<std::optional<std::array<std::int32_t, 9>>> m_indexRotation;
+   // Per rotation and site of the origin: for every local site the rotation number that takes the cell frame
+   // there to the cell frame where it lands; empty where the placement is not allowed.
+   std::vector<std::vector<int>> m_turn;
+   std::vector<int> m_firstAllowed; // per rotation: the first site of the origin that is allowed
+
    std::vector<Index> m_supercellStep;
    int m_supercellLongest = 0, m_supercellDefault = 1;
    double m_volumePerSite = 0, m_radius = 0;
