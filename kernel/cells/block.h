@@ -1,4 +1,5 @@
-// An owning reference to part of a cell array's tree: nothing, one value for the whole block, or a shared node.
+// An owning reference to part of a cell array's tree: nothing, one value for the whole block, or a shared
+// node.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,8 @@ namespace diatom::detail {
 
 struct Node;
 
-/// Eight bytes, counted by the node itself: a tree of millions of blocks stays small, and asking "am I the only owner"
-/// synchronises with other threads' releases, which std::shared_ptr::use_count() does not.
+/// Eight bytes, counted by the node itself: a tree of millions of blocks stays small, and asking "am I the
+/// only owner" synchronises with other threads' releases, which std::shared_ptr::use_count() does not.
 class Block
 {
 public:

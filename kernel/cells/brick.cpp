@@ -2,6 +2,7 @@
 #include "cells/tree.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace diatom::detail {
 
@@ -69,42 +70,68 @@ void Brick::decode(std::uint32_t *cells) const
    }
 }
 
+bool Brick::findPalette(const std::uint32_t *cells, std::uint8_t *numbers)
+{
+   palette.clear();
+   for (unsigned c = 0; c < kBrickCells;) {
+      const std::uint32_t value = cells[c];
+      unsigned end = c + 1;
+      while (end < kBrickCells && cells[end] == value)
+         ++end;
+      std::size_t n = 0;
+      while (n < palette.size() && palette[n].value != value)
+         ++n;
+      if (n == 256)
+         return false;
+      if (n == palette.size())
+         palette.push_back({value, 0});
+      palette[n].uses += end - c;
+      std::fill(numbers + c, numbers + end, static_cast<std::uint8_t>(n));
+      c = end;
+   }
+   return true;
+}
+
 void Brick::encode(const std::uint32_t *cells, Coord origin)
 {
-   std::array<std::uint8_t, kBrickCells> numbers{};
-   palette.clear();
-   std::size_t last = 0;
-   bool raw = false;
-   count = 0;
-   bounds = Box();
-   for (unsigned c = 0; c < kBrickCells; ++c) {
-      const std::uint32_t value = cells[c];
-      if (value != 0) {
-         ++count;
-         bounds.extend(brickIndex(origin, c));
-      }
-      if (raw)
-         continue;
-      if (palette.empty() || palette[last].value != value) {
-         last = static_cast<std::size_t>(
-            std::find_if(palette.begin(), palette.end(), [&](const Entry &e) { return e.value == value; }) -
-            palette.begin());
-         if (last == palette.size() && last == 256) {
-            raw = true;
-            continue;
-         }
-         if (last == palette.size())
-            palette.push_back({value, 0});
-      }
-      ++palette[last].uses;
-      numbers[c] = static_cast<std::uint8_t>(last);
-   }
+   std::array<std::uint8_t, kBrickCells> numbers;
+   const bool raw = !findPalette(cells, numbers.data());
    if (raw)
       palette.clear();
    const std::size_t n = palette.size();
    allocate(raw ? kRaw : n <= 2 ? 0 : n <= 4 ? 1 : n <= 16 ? 2 : 3);
-   for (unsigned c = 0; c < kBrickCells; ++c)
-      put(c, raw ? cells[c] : numbers[c]);
+   const unsigned width = 1U << widthLog, perWord = 64 / width;
+   for (unsigned c = 0, w = 0; c < kBrickCells; ++w) {
+      std::uint64_t word = 0;
+      for (unsigned k = 0; k < perWord; ++k, ++c)
+         word |= std::uint64_t{raw ? cells[c] : numbers[c]} << (k * width);
+      words[w] = word;
+   }
+   measure(cells, origin);
+}
+
+void Brick::measure(const std::uint32_t *cells, Coord origin)
+{
+   count = 0;
+   bounds = Box();
+   unsigned xs = 0, ys = 0, zs = 0; // bit v: some cell has coordinate v
+   for (unsigned row = 0; row < 256; ++row, cells += 16) {
+      unsigned bits = 0;
+      for (unsigned z = 0; z < 16; ++z)
+         bits |= static_cast<unsigned>(cells[z] != 0) << z;
+      if (bits == 0)
+         continue;
+      count += static_cast<unsigned>(std::popcount(bits));
+      zs |= bits;
+      xs |= 1U << (row >> 4);
+      ys |= 1U << (row & 15);
+   }
+   if (count == 0)
+      return;
+   const auto low = [](unsigned v) { return static_cast<unsigned>(std::countr_zero(v)); };
+   const auto high = [](unsigned v) { return 31U - static_cast<unsigned>(std::countl_zero(v)); };
+   bounds = {unbiased({origin.x + low(xs), origin.y + low(ys), origin.z + low(zs)}),
+             unbiased({origin.x + high(xs), origin.y + high(ys), origin.z + high(zs)})};
 }
 
 void Brick::widen()
@@ -156,7 +183,7 @@ Change Brick::set(unsigned cell, Index i, std::uint32_t value)
       ++palette[n].uses;
    const int added = (value != 0) - (old != 0);
    count += static_cast<std::uint64_t>(static_cast<std::int64_t>(added));
-   if (added > 0)
+   if (added > 0 && !bounds.contains(i))
       bounds.extend(i);
    else if (added < 0)
       shrinkBounds(i);

@@ -2,6 +2,7 @@
 #include "cells/cell_array.h"
 
 #include "cells/tree.h"
+#include "core/check.h"
 
 #include <algorithm>
 
@@ -11,7 +12,8 @@ using namespace detail;
 
 namespace {
 
-constexpr Box kEverything{{-kIndexLimit, -kIndexLimit, -kIndexLimit}, {kIndexLimit, kIndexLimit, kIndexLimit}};
+constexpr Box kEverything{{-kIndexLimit, -kIndexLimit, -kIndexLimit},
+                          {kIndexLimit, kIndexLimit, kIndexLimit}};
 
 Box clipped(const Box &a, const Box &b)
 {
@@ -57,7 +59,8 @@ bool visitCells(const Box &box, Value value, const std::function<bool(Index, Cel
 }
 
 /// Calls visit for runs of equal cells along z.
-void visitRuns(const Box &box, const Brick &brick, const std::function<bool(const Box &, Cell)> &visit, bool &on)
+void visitRuns(const Box &box, const Brick &brick, const std::function<bool(const Box &, Cell)> &visit,
+               bool &on)
 {
    const auto value = [&](Index i) { return brick.at(brickCell(biased(i))); };
    for (std::int32_t x = box.min.x; x <= box.max.x; ++x)
@@ -103,19 +106,19 @@ std::vector<std::uint64_t> CellArray::countByMaterial() const
    };
    if (const RootView root = viewRoot(m_root); root.node)
       walk(
-         m_root, root.origin, root.node->level, rangeOf(bounds()),
-         [&](const Brick &brick, Coord) {
-            for (const Brick::Entry &entry : brick.palette)
-               add(entry.value, entry.uses);
-            if (brick.widthLog == Brick::kRaw)
-               for (unsigned c = 0; c < kBrickCells; ++c)
-                  add(brick.at(c), 1);
-            return true;
-         },
-         [&](std::uint32_t value, Coord, int level) {
-            add(value, blockCells(level));
-            return true;
-         });
+          m_root, root.origin, root.node->level, rangeOf(bounds()),
+          [&](const Brick &brick, Coord) {
+             for (const Brick::Entry &entry : brick.palette)
+                add(entry.value, entry.uses);
+             if (brick.widthLog == Brick::kRaw)
+                for (unsigned c = 0; c < kBrickCells; ++c)
+                   add(brick.at(c), 1);
+             return true;
+          },
+          [&](std::uint32_t value, Coord, int level) {
+             add(value, blockCells(level));
+             return true;
+          });
    return counts;
 }
 
@@ -134,6 +137,13 @@ void CellArray::fill(const Box &box, Cell cell)
    const Box part = clipped(box, cell.empty() ? bounds() : kEverything);
    if (!part.empty())
       fillRange(m_root, rangeOf(part), cell.empty() ? 0 : cell.packed());
+}
+
+void CellArray::write(const Box &box, std::span<const Cell> cells)
+{
+   const bool fits = !box.empty() && inRange(box.min) && inRange(box.max);
+   DIATOM_CHECK(fits && box.volume() == static_cast<double>(cells.size()));
+   writeRange(m_root, rangeOf(box), cells.data());
 }
 
 void CellArray::clear() { m_root = Block(); }
@@ -158,14 +168,15 @@ bool CellArray::visit(const Box &box, const std::function<bool(Index, Cell)> &vi
    if (!root.node || part.empty())
       return true;
    return walk(
-      m_root, root.origin, root.node->level, rangeOf(part),
-      [&](const Brick &brick, Coord) {
-         return visitCells(
-            clipped(part, brick.bounds), [&](Index i) { return brick.at(brickCell(biased(i))); }, visit);
-      },
-      [&](std::uint32_t value, Coord origin, int level) {
-         return visitCells(clipped(part, blockBox(origin, level)), [value](Index) { return value; }, visit);
-      });
+       m_root, root.origin, root.node->level, rangeOf(part),
+       [&](const Brick &brick, Coord) {
+          return visitCells(
+              clipped(part, brick.bounds), [&](Index i) { return brick.at(brickCell(biased(i))); }, visit);
+       },
+       [&](std::uint32_t value, Coord origin, int level) {
+          return visitCells(
+              clipped(part, blockBox(origin, level)), [value](Index) { return value; }, visit);
+       });
 }
 
 bool CellArray::visit(const std::function<bool(Index, Cell)> &visit) const
@@ -180,15 +191,15 @@ void CellArray::visitBlocks(const Box &box, const std::function<bool(const Box &
    if (!root.node || part.empty())
       return;
    walk(
-      m_root, root.origin, root.node->level, rangeOf(part),
-      [&](const Brick &brick, Coord) {
-         bool on = true;
-         visitRuns(clipped(part, brick.bounds), brick, visit, on);
-         return on;
-      },
-      [&](std::uint32_t value, Coord origin, int level) {
-         return visit(clipped(part, blockBox(origin, level)), Cell::unpacked(value));
-      });
+       m_root, root.origin, root.node->level, rangeOf(part),
+       [&](const Brick &brick, Coord) {
+          bool on = true;
+          visitRuns(clipped(part, brick.bounds), brick, visit, on);
+          return on;
+       },
+       [&](std::uint32_t value, Coord origin, int level) {
+          return visit(clipped(part, blockBox(origin, level)), Cell::unpacked(value));
+       });
 }
 
 bool operator==(const CellArray &a, const CellArray &b) { return equalBlocks(a.m_root, b.m_root); }

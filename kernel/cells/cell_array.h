@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace diatom {
@@ -35,6 +36,9 @@ public:
    void set(Index i, Cell cell);
    /// Sets every cell of the box; whole bricks and larger blocks are stored as one value.
    void fill(const Box &box, Cell cell);
+   /// Sets every cell of the box, which must be in range, from as many cells in order x, y, z (z fastest):
+   /// the quick way in for importers, several times faster than one by one.
+   void write(const Box &box, std::span<const Cell> cells);
    void clear();
    /// Replaces a material everywhere.
    void replaceMaterial(MaterialIndex from, MaterialIndex to);

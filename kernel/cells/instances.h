@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ struct Placement
 class Instances
 {
 public:
-   std::uint64_t count() const;
+   std::uint64_t count() const { return m_count; }
    bool contains(const Placement &placement) const;
    /// False when it was there already.
    bool insert(const Placement &placement);
@@ -45,10 +46,17 @@ public:
    /// Chunks of neighbouring placements, for spatial queries that keep bounds per chunk. Immutable and
    /// shared.
    using Chunk = std::vector<Placement>;
-   const std::vector<std::shared_ptr<const Chunk>> &chunks() const { return m_chunks; }
+   std::span<const std::shared_ptr<const Chunk>> chunks() const
+   {
+      return m_chunks ? std::span(*m_chunks) : std::span<const std::shared_ptr<const Chunk>>();
+   }
 
 private:
-   std::vector<std::shared_ptr<const Chunk>> m_chunks;
+   using Chunks = std::vector<std::shared_ptr<const Chunk>>;
+   Chunks &writable();
+
+   std::shared_ptr<Chunks> m_chunks; // never changed while shared; no empty chunk; null = no instances
+   std::uint64_t m_count = 0;
 };
 
 } // namespace diatom

@@ -1,10 +1,11 @@
 // The tree behind a cell array: 16^3 bricks below inner nodes of 4x4x4 blocks. Internal to kernel/cells.
 //
-// Canonical form: a block of one value is never a node, and the root is the smallest inner node that holds all content.
-// So equal contents have equal trees, however they came about.
+// Canonical form: a block of one value is never a node, and the root is the smallest inner node that holds
+// all content. So equal contents have equal trees, however they came about.
 #pragma once
 
 #include "cells/block.h"
+#include "cells/cell.h"
 #include "core/hash.h"
 #include "core/index.h"
 
@@ -17,8 +18,9 @@
 
 namespace diatom::detail {
 
-/// An index shifted to be positive. The bias puts index 0 in the middle of its block on every level, so that content
-/// around the origin has a shallow tree: 0xAAAAAAA0 is child number 2 of 4 at each level above the brick.
+/// An index shifted to be positive. The bias puts index 0 in the middle of its block on every level, so that
+/// content around the origin has a shallow tree: 0xAAAAAAA0 is child number 2 of 4 at each level above the
+/// brick.
 struct Coord
 {
    std::uint32_t x = 0, y = 0, z = 0;
@@ -68,10 +70,6 @@ constexpr Coord childOrigin(Coord origin, int level, unsigned child)
            origin.z + ((child & 3) << shift)};
 }
 constexpr unsigned brickCell(Coord u) { return (u.x & 15) << 8 | (u.y & 15) << 4 | (u.z & 15); }
-constexpr Index brickIndex(Coord origin, unsigned cell)
-{
-   return unbiased({origin.x + (cell >> 8), origin.y + ((cell >> 4) & 15), origin.z + (cell & 15)});
-}
 /// Box of a whole block; only for blocks within the range of indices.
 constexpr Box blockBox(Coord origin, int level)
 {
@@ -94,8 +92,8 @@ struct Node
    std::uint8_t level; // 0 = brick
    mutable std::atomic<bool> hashed{false};
    mutable std::atomic<std::uint64_t> hashHigh{0}, hashLow{0}; // valid when hashed
-   std::uint64_t count = 0; // saturates
-   Box bounds;              // tight
+   std::uint64_t count = 0;                                    // saturates
+   Box bounds;                                                 // tight
 };
 
 /// What setting a cell did.
@@ -105,7 +103,8 @@ struct Change
    int added = 0; // cells: -1, 0, 1
 };
 
-/// 16^3 cells: numbers into a palette, packed to 1, 2, 4 or 8 bits; above 256 different values the values themselves.
+/// 16^3 cells: numbers into a palette, packed to 1, 2, 4 or 8 bits; above 256 different values the values
+/// themselves.
 struct Brick : Node
 {
    struct Entry
@@ -142,6 +141,9 @@ struct Brick : Node
 
 private:
    void encode(const std::uint32_t *cells, Coord origin);
+   /// Palette and number of each cell; false when there are more than 256 values.
+   bool findPalette(const std::uint32_t *cells, std::uint8_t *numbers);
+   void measure(const std::uint32_t *cells, Coord origin);
    void allocate(int log);
    void put(unsigned cell, std::uint32_t number);
    std::uint32_t entryFor(std::uint32_t value);
@@ -180,6 +182,8 @@ constexpr Range rangeOf(const Box &box) { return {biased(box.min), biased(box.ma
 // Edits of a root block (tree_edit.cpp). All keep the canonical form.
 void setCell(Block &root, Index i, std::uint32_t value);
 void fillRange(Block &root, const Range &range, std::uint32_t value);
+/// Cells of the range from packed values in order x, y, z (z fastest).
+void writeRange(Block &root, const Range &range, const Cell *cells);
 void mapValues(Block &root, const std::function<std::uint32_t(std::uint32_t)> &map);
 
 // Questions (tree_query.cpp).
@@ -196,8 +200,8 @@ std::uint64_t blockBytes(const Block &block);
 Box contentBounds(const Block &block, Coord origin, int level);
 std::uint64_t contentCount(const Block &block, int level);
 
-/// Calls brick(const Brick &, origin) or tile(value, origin, level) for every block that holds content within `range`,
-/// in order of visits; stops when one returns false.
+/// Calls brick(const Brick &, origin) or tile(value, origin, level) for every block that holds content within
+/// `range`, in order of visits; stops when one returns false.
 bool walk(const Block &block, Coord origin, int level, const Range &range,
           const std::function<bool(const Brick &, Coord)> &brick,
           const std::function<bool(std::uint32_t, Coord, int)> &tile);

@@ -2,13 +2,16 @@
 #include "cells/tree.h"
 #include "core/check.h"
 
+#include <algorithm>
+
 namespace diatom::detail {
 
 void Block::retainNode() const { node()->references.fetch_add(1, std::memory_order_relaxed); }
 
 void Block::releaseNode()
 {
-   // Acquire and release: the last owner, and one that finds itself the only owner, see all reads of the others done.
+   // Acquire and release: the last owner, and one that finds itself the only owner, see all reads of the
+   // others done.
    if (node()->references.fetch_sub(1, std::memory_order_acq_rel) != 1)
       return;
    if (node()->level == 0)
@@ -43,8 +46,8 @@ Node *cloneNode(const Node &node)
    return inner;
 }
 
-/// The block's node, owned by this tree alone. A shared parent was copied before, which made its children shared: one
-/// reference here means that no other tree reaches the node.
+/// The block's node, owned by this tree alone. A shared parent was copied before, which made its children
+/// shared: one reference here means that no other tree reaches the node.
 Node &writable(Block &slot, int level, Coord origin)
 {
    if (!slot.isNode())
@@ -62,7 +65,8 @@ void summariseBounds(Inner &inner, Coord origin)
    inner.bounds = Box();
    for (unsigned c = 0; c < 64; ++c)
       if (!inner.children[c].empty())
-         inner.bounds.extend(contentBounds(inner.children[c], childOrigin(origin, inner.level, c), inner.level - 1));
+         inner.bounds.extend(
+             contentBounds(inner.children[c], childOrigin(origin, inner.level, c), inner.level - 1));
 }
 
 void summariseCount(Inner &inner)
@@ -132,37 +136,58 @@ Change setWithin(Block &slot, int level, Coord u, Index i, std::uint32_t value)
    return change;
 }
 
-void fillBrick(Brick &brick, Block &slot, Coord origin, const Range &range, std::uint32_t value)
+/// New content of the part of a brick that lies in `range`: either one value, or cells in order x, y, z of
+/// the range.
+struct Content
+{
+   std::uint32_t value = 0;
+   const Cell *cells = nullptr;
+};
+
+void overwriteBrick(Block &slot, Coord origin, const Range &range, const Content &content)
 {
    std::array<std::uint32_t, kBrickCells> cells;
-   brick.decode(cells.data());
+   if (slot.isNode())
+      asBrick(*slot.node()).decode(cells.data());
+   else
+      cells.fill(slot.value());
    const auto low = [](std::uint32_t o, std::uint32_t from) { return from > o ? from - o : 0; };
    const auto high = [](std::uint32_t o, std::uint32_t to) { return to - o < 15 ? to - o : 15; };
+   const std::size_t sizeY = range.high.y - range.low.y + std::size_t{1};
+   const std::size_t sizeZ = range.high.z - range.low.z + std::size_t{1};
    const unsigned z0 = low(origin.z, range.low.z), z1 = high(origin.z, range.high.z);
    for (unsigned x = low(origin.x, range.low.x); x <= high(origin.x, range.high.x); ++x)
-      for (unsigned y = low(origin.y, range.low.y); y <= high(origin.y, range.high.y); ++y)
-         for (unsigned z = z0; z <= z1; ++z)
-            cells[x << 8 | y << 4 | z] = value;
+      for (unsigned y = low(origin.y, range.low.y); y <= high(origin.y, range.high.y); ++y) {
+         std::uint32_t *row = &cells[x << 8 | y << 4];
+         if (!content.cells) {
+            std::fill(row + z0, row + z1 + 1, content.value);
+            continue;
+         }
+         const Cell *from = content.cells +
+                            ((origin.x + x - range.low.x) * sizeY + (origin.y + y - range.low.y)) * sizeZ +
+                            (origin.z + z0 - range.low.z);
+         for (unsigned z = z0; z <= z1; ++z, ++from)
+            row[z] = from->empty() ? 0 : from->packed();
+      }
    slot = Block::own(new Brick(cells.data(), origin));
 }
 
-void fillWithin(Block &slot, int level, Coord origin, const Range &range, std::uint32_t value)
+void overwrite(Block &slot, int level, Coord origin, const Range &range, const Content &content)
 {
-   if (!slot.isNode() && slot.value() == value)
+   if (!content.cells && !slot.isNode() && slot.value() == content.value)
       return;
-   if (range.covers(origin, level)) {
-      slot = Block::uniform(value);
+   if (!content.cells && range.covers(origin, level)) {
+      slot = Block::uniform(content.value);
       return;
    }
-   Node &node = writable(slot, level, origin);
    if (level == 0) {
-      fillBrick(static_cast<Brick &>(node), slot, origin, range, value);
+      overwriteBrick(slot, origin, range, content);
    } else {
-      auto &inner = static_cast<Inner &>(node);
+      auto &inner = static_cast<Inner &>(writable(slot, level, origin));
       for (unsigned c = 0; c < 64; ++c) {
          const Coord at = childOrigin(origin, level, c);
          if (range.meets(at, level - 1))
-            fillWithin(inner.children[c], level - 1, at, range, value);
+            overwrite(inner.children[c], level - 1, at, range, content);
       }
       summariseCount(inner);
       summariseBounds(inner, origin);
@@ -249,11 +274,50 @@ void settleRoot(Block &root, int level, Coord inside)
    }
 }
 
+/// The usual edit, without recursion: a cell that is not empty, into a brick that this tree owns alone and
+/// that cannot become uniform by it. False, with nothing done, when the general way must be taken.
+bool setInPlace(Block &root, Coord u, Index i, std::uint32_t value)
+{
+   std::array<Node *, kTopLevel + 1> path;
+   if (root.empty() || !sameBlock(u, biased(root.node()->bounds.min), root.node()->level))
+      return false;
+   Block *slot = &root;
+   int level = root.node()->level;
+   for (int n = level;; --n) {
+      if (!slot->isNode() || slot->node()->references.load(std::memory_order_acquire) != 1)
+         return false;
+      path[static_cast<std::size_t>(n)] = slot->mutableNode();
+      if (n == 0)
+         break;
+      slot = &static_cast<Inner *>(slot->mutableNode())->children[childNumber(u, n)];
+   }
+   auto &brick = static_cast<Brick &>(*path[0]);
+   if (brick.count >= kBrickCells - 1)
+      return false;
+   const Change change = brick.set(brickCell(u), i, value);
+   if (!change.changed)
+      return true;
+   brick.hashed.store(false, std::memory_order_relaxed);
+   for (int n = 1; n <= level; ++n) {
+      auto &inner = static_cast<Inner &>(*path[static_cast<std::size_t>(n)]);
+      inner.hashed.store(false, std::memory_order_relaxed);
+      if (inner.count > ~std::uint64_t{0} / 2)
+         summariseCount(inner);
+      else
+         inner.count += static_cast<std::uint64_t>(change.added);
+      if (!inner.bounds.contains(i))
+         inner.bounds.extend(i);
+   }
+   return true;
+}
+
 } // namespace
 
 void setCell(Block &root, Index i, std::uint32_t value)
 {
    const Coord u = biased(i);
+   if (value != 0 && setInPlace(root, u, i, value))
+      return;
    const bool within = !root.empty() && root.node()->bounds.contains(i);
    if (value == 0 && !within)
       return;
@@ -267,7 +331,14 @@ void setCell(Block &root, Index i, std::uint32_t value)
 void fillRange(Block &root, const Range &range, std::uint32_t value)
 {
    const int level = growRoot(root, range.low, range.high);
-   fillWithin(root, level, blockOrigin(range.low, level), range, value);
+   overwrite(root, level, blockOrigin(range.low, level), range, {value, nullptr});
+   settleRoot(root, level, range.low);
+}
+
+void writeRange(Block &root, const Range &range, const Cell *cells)
+{
+   const int level = growRoot(root, range.low, range.high);
+   overwrite(root, level, blockOrigin(range.low, level), range, {0, cells});
    settleRoot(root, level, range.low);
 }
 

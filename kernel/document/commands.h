@@ -2,6 +2,7 @@
 // it.
 #pragma once
 
+#include "cells/hierarchy.h"
 #include "core/job.h"
 #include "core/result.h"
 #include "document/design.h"
@@ -31,6 +32,8 @@ struct CommandContext
    Design &design;
    std::shared_ptr<const Catalogue> catalogue;
    const Job &job;
+   /// Of the design as it is before the command; null = the command makes its own when it needs one.
+   std::shared_ptr<const Hierarchy> hierarchy = nullptr;
 };
 
 /// One editing command.

@@ -55,8 +55,9 @@ private:
    std::shared_ptr<const Catalogue> m_catalogue;
    std::vector<Step> m_history;
    std::size_t m_now = 0, m_saved = 0;
-   mutable std::shared_ptr<const Hierarchy> m_hierarchy;
-   mutable std::size_t m_hierarchyOf = 0;
+   mutable std::shared_ptr<const Hierarchy> m_hierarchy; // of step m_hierarchyOf, or of one that is gone
+   mutable std::size_t m_hierarchyOf = kNoStep;
+   static constexpr std::size_t kNoStep = static_cast<std::size_t>(-1);
 };
 
 } // namespace diatom
