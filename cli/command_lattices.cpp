@@ -1,5 +1,5 @@
 // diatom lattices: what the installed lattices are, in lattice units.
-#include "cli.h"
+#include "cli/commands.h"
 
 #include "lattice/lattice.h"
 
@@ -61,7 +61,8 @@ void run(Context &context)
 
 void addLattices(CLI::App &app, Context &context)
 {
-   CLI::App *command = app.add_subcommand("lattices", "List the lattices: cell, packing, neighbours, rotations");
+   CLI::App *command =
+       app.add_subcommand("lattices", "List the lattices: cell, packing, neighbours, rotations");
    command->callback([&context] { run(context); });
 }
 

@@ -13,6 +13,13 @@ namespace {
 
 constexpr std::int64_t kBulkGrain = 1 << 15;
 
+/// Ceiling of a number within the range of indices; without SSE 4.1 std::ceil is a call.
+std::int32_t roundedUp(double value)
+{
+   const auto whole = static_cast<std::int32_t>(value);
+   return whole + (value > whole ? 1 : 0);
+}
+
 std::int32_t limited(std::int64_t coordinate)
 {
    return static_cast<std::int32_t>(std::clamp<std::int64_t>(coordinate, -kIndexLimit, kIndexLimit));
@@ -61,8 +68,10 @@ void Lattice::positions(std::span<const Index> indices, std::span<double> xyz, c
                    });
 }
 
-Index Lattice::nearest(const Vec3 &point) const
+Index Lattice::nearest(const Vec3 &wanted) const
 {
+   const Vec3 point = wanted.unaryExpr(
+       [this](double v) { return std::isnan(v) ? 0 : std::clamp(v, -m_farthest, m_farthest); });
    Index best;
    double bestDistance = 0;
    bool found = false;
@@ -78,24 +87,20 @@ Index Lattice::nearest(const Vec3 &point) const
 
    // Cells of one site form a plain lattice of whole periods: the nearest of them is within m_search of the
    // rounded coordinates, exactly one cell per site when the basis is orthogonal.
-   for (int s = 0; s < sites(); ++s) {
-      const std::array<std::int32_t, 3> at{s / (m_period[1] * m_period[2]), s / m_period[2] % m_period[1],
-                                           s % m_period[2]};
-      const Vec3 periods = m_periodInverse * (point - m_offset[static_cast<std::size_t>(s)]);
+   for (const SiteCells &cells : m_siteCells) {
+      const Vec3 periods = m_periodInverse * point - cells.start;
       std::array<std::int32_t, 3> from{}, to{};
       for (std::size_t k = 0; k < 3; ++k) {
-         const double p = m_period[k];
-         const double low = std::ceil((-kIndexLimit - at[k]) / p),
-                      high = std::floor((kIndexLimit - at[k]) / p);
-         double u = periods[static_cast<Eigen::Index>(k)] - at[k] / p;
-         u = std::isnan(u) ? 0 : std::clamp(u, low, high);
-         from[k] = static_cast<std::int32_t>(std::max(low, std::ceil(u - m_search[k])));
-         to[k] = static_cast<std::int32_t>(std::min(high, std::floor(u + m_search[k])));
+         const double low = cells.low[k], high = cells.high[k];
+         const double u = std::clamp(periods[static_cast<Eigen::Index>(k)], low, high);
+         from[k] = roundedUp(std::max(low, u - m_search[k]));
+         to[k] = -roundedUp(-std::min(high, u + m_search[k]));
       }
       for (std::int32_t x = from[0]; x <= to[0]; ++x)
          for (std::int32_t y = from[1]; y <= to[1]; ++y)
             for (std::int32_t z = from[2]; z <= to[2]; ++z)
-               consider({x * m_period[0] + at[0], y * m_period[1] + at[1], z * m_period[2] + at[2]});
+               consider({x * m_period[0] + cells.site.x, y * m_period[1] + cells.site.y,
+                         z * m_period[2] + cells.site.z});
    }
    return best;
 }

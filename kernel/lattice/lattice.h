@@ -143,11 +143,19 @@ private:
    std::vector<std::vector<Link>> m_links;
    std::vector<std::vector<int>> m_faceLink; // per site and face: number of the link through it, or -1
 
-   // Inverse of the basis times the period, how far from the rounded value the nearest cell may lie, per axis
-   // and in periods, and the squared distance below which two cells are equally near.
-   Mat3 m_periodInverse = Mat3::Identity();
-   std::array<double, 3> m_search{0.5, 0.5, 0.5};
-   double m_tie = 0;
+   // For nearest(). The cells of one site: index = site + n * period, with n in [low, high]; `start` is where
+   // n = 0 lies, in periods.
+   struct SiteCells
+   {
+      Index site;
+      Vec3 start;
+      std::array<double, 3> low{}, high{};
+   };
+   std::vector<SiteCells> m_siteCells;
+   Mat3 m_periodInverse = Mat3::Identity();       // of the basis times the period
+   std::array<double, 3> m_search{0.5, 0.5, 0.5}; // how far the nearest cell may lie, per axis and in periods
+   double m_farthest = 0;                         // beyond the centre of every index in range
+   double m_tie = 0;                              // squared distances that differ by less are equal
 
    std::vector<Quat> m_rotations;
    std::vector<Mat3> m_rotationMatrix;

@@ -170,6 +170,18 @@ bool LatticeBuilder::addSearch()
       const double farthest = orthogonal ? 0.5 : 0.5 * sum * m_.m_periodInverse.row(k).norm();
       m_.m_search[static_cast<std::size_t>(k)] = farthest + 1e-6; // and both sides of a tie
    }
+   m_.m_farthest = 4.0 * kIndexLimit * sum;
+   for (int s = 0; s < m_.sites(); ++s) {
+      const Index site = indexOf(s);
+      const std::array<std::int32_t, 3> at{site.x, site.y, site.z};
+      const Vec3 start = m_.m_periodInverse * m_.position(site);
+      Lattice::SiteCells cells{site, start, {}, {}};
+      for (std::size_t k = 0; k < 3; ++k) {
+         cells.low[k] = std::ceil((-kIndexLimit - at[k]) / static_cast<double>(m_.m_period[k]));
+         cells.high[k] = std::floor((kIndexLimit - at[k]) / static_cast<double>(m_.m_period[k]));
+      }
+      m_.m_siteCells.push_back(cells);
+   }
    m_.m_tie = kTie * m_.m_radius * m_.m_radius;
    return *std::max_element(m_.m_search.begin(), m_.m_search.end()) < kFarthestSearch;
 }

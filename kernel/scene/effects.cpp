@@ -203,6 +203,10 @@ Verdict lookSelfContact(const Look &)
 
 bool differsByDirection(const Material &material)
 {
+   const bool sideways = material.actuation.mode == Actuation::Mode::shear ||
+                         material.actuation.mode == Actuation::Mode::bending;
+   if (material.role == ElectricalRole::actuator && sideways)
+      return true; // shears or bends towards a direction of its own
    if (!material.bonds)
       return false;
    const BondConstants &k = *material.bonds;
@@ -220,15 +224,13 @@ Verdict lookOrientation(const Look &look)
 {
    const auto directed = materialsWhere(look, differsByDirection);
    if (directed.ids.empty())
-      return {false,
-              "every material in use is the same in all directions, so that turned cells behave alike",
-              {}};
-   return {
-       true,
-       "constants differ by direction and are turned with the cell when the scene is built, at no cost in a "
-       "step: " +
-           directed.names(),
-       directed.cells};
+      return {
+          false, "every cell in use is the same in all directions, so that turned cells behave alike", {}};
+   return {true,
+           "cells differ by direction and are turned with the cell when the scene is built, at no cost in a "
+           "step: " +
+               directed.names(),
+           directed.cells};
 }
 
 Verdict lookPoisson(const Look &)

@@ -374,8 +374,7 @@ void NetworkFinder::checkNets()
              fmt::format("{} sources drive one net: {}; keep one of them or interrupt the wire between them",
                          drivers.size(), cellsText(drivers)),
              drivers);
-      else if (drivers.size() == 1 && one.sources.size() == 1 && one.cells.size() == 1 &&
-               one.actuators.empty())
+      else if (!drivers.empty() && drivers == one.cells && one.actuators.empty())
          report(
              Problem::Severity::warning, "open-source",
              fmt::format("the source at {} touches no conductor; wire it or remove it", cellsText(drivers)),

@@ -120,7 +120,7 @@ struct Simulation::Self
    std::map<std::string, std::int64_t> outputNumber;
 
    double askedStep = 0; // 0 = the solver's own
-   double time = 0, step = 0, stableStep = 0, wall = 0;
+   double time = 0, step = 0, stableStep = 0, wall = 0, goal = 0;
    std::int64_t steps = 0, stableLink = -1;
    Energy atStart;
    double mostInPlay = 0;
@@ -271,12 +271,13 @@ double Simulation::stableStep() const { return m_self->stableStep; }
 std::int64_t Simulation::stableLink() const { return m_self->stableLink; }
 double Simulation::wallSeconds() const { return m_self->wall; }
 
+void Simulation::setGoal(double time) { m_self->goal = time; }
+
 Status Simulation::advance(double until, const Job &job)
 {
    using Clock = std::chrono::steady_clock;
    Self &self = *m_self;
    const std::int64_t batch = std::max<std::int64_t>(1, kBatch / self.scene->cells());
-   const double from = self.time;
    while (self.time < until) {
       if (job.cancelled())
          return Error{ErrorCode::cancelled, fmt::format("cancelled at t = {} s", numberText(self.time))};
@@ -299,7 +300,7 @@ Status Simulation::advance(double until, const Job &job)
          return self.diverged(result);
       if (const Status looked = self.lookAtEnergy(job); !looked)
          return looked;
-      job.progress(std::clamp((self.time - from) / (until - from), 0.0, 1.0), "simulating");
+      job.progress(std::min(1.0, self.time / std::max(until, self.goal)), "simulating");
       if (result.state == DIATOM_DONE)
          break;
       if (result.steps <= 0)

@@ -55,6 +55,8 @@ public:
    std::int64_t stableLink() const;
    double wallSeconds() const; // spent stepping
 
+   /// Time that progress is told against, where advance() is called in pieces.
+   void setGoal(double time);
    /// Steps until `until` (s). On divergence: ErrorCode::unstable with bond, time and remedy; the last good
    /// state stays readable. On cancel: ErrorCode::cancelled, likewise.
    Status advance(double until, const Job &job);

@@ -13,7 +13,10 @@ extern "C" {
 #define DIATOM_AXIS_LINEAR 0
 #define DIATOM_AXIS_ROTARY 1
 
-/* Plugin memory, immutable until destroy. SI: metres, radians, seconds. */
+/* Plugin memory, immutable until destroy. SI: metres, radians, seconds.
+ *
+ * The tool's position is that of the part it holds or is about to grip: sideways the part's own origin, in
+ * height the part's lowest point. Position = sum of axis value times axis direction over the sliding axes. */
 typedef struct diatom_machine_description
 {
    int64_t size;
@@ -24,19 +27,19 @@ typedef struct diatom_machine_description
    const double *axis_direction; /* 3 each */
    const double *axis_minimum;   /* m or rad */
    const double *axis_maximum;
-   const double *axis_home;
+   const double *axis_home;         /* where a program begins and ends */
    const double *axis_speed;        /* rapid, m/s or rad/s */
    const double *axis_acceleration; /* m/s2 or rad/s2 */
    const double *feeder_position;   /* 3 each: where the first part of feeder f is picked up */
-   const int32_t *feeder_columns;   /* parts per row; 1 for a feeder that presents each part at one place */
-   const int32_t *feeder_rows;
-   const double *feeder_pitch; /* metres between neighbours in rows and columns */
-   double origin[3];           /* where the build plate's origin lies */
-   double clearance;           /* height above the highest thing for travel, m */
-   double approach;            /* height above a part where feeding begins, m */
-   double feed;                /* speed while picking and placing, m/s */
-   double grip_seconds;        /* dwell while the gripper closes or opens */
-   const char *suffix;         /* file suffix of its programs, without the dot */
+   const int32_t *feeder_columns;   /* parts per row, along x */
+   const int32_t *feeder_rows;      /* along y; 1 x 1 for a feeder that presents each part at one place */
+   const double *feeder_pitch;      /* metres between neighbours in rows and columns, one per feeder */
+   double origin[3];                /* where the least corner of the assembly's bounding box comes to lie */
+   double clearance;                /* height above the highest thing for travel, m */
+   double approach;                 /* height above a part where feeding begins, m */
+   double feed;                     /* speed while picking and placing, m/s */
+   double grip_seconds;             /* dwell while the gripper closes or opens */
+   const char *suffix;              /* file suffix of its programs, without the dot */
 } diatom_machine_description;
 
 /* Operations of a program. */
@@ -46,7 +49,12 @@ typedef struct diatom_machine_description
 #define DIATOM_OP_PLACE 3 /* open the gripper on part */
 #define DIATOM_OP_DWELL 4
 #define DIATOM_OP_NOTE 5
-#define DIATOM_OP_HOME 6
+#define DIATOM_OP_HOME 6  /* rapid to target, upwards before sideways */
+#define DIATOM_OP_PAUSE 7 /* wait for the operator */
+
+/* A long program comes in several calls of post(), in order; 0 = this is all of it. */
+#define DIATOM_PIECE_CONTINUES 1 /* not the first: no heading */
+#define DIATOM_PIECE_MORE 2      /* not the last: no end */
 
 /* Machine-neutral program, one entry per operation. Host memory, valid until the call returns. */
 typedef struct diatom_program
@@ -54,16 +62,16 @@ typedef struct diatom_program
    int64_t size;
    int64_t count;
    int32_t axes;
-   int32_t reserved;
+   int32_t piece; /* DIATOM_PIECE_... bits */
    const int32_t *op;
    const int32_t *moved;    /* bit a set: axis a is commanded */
    const double *target;    /* axes per operation, m or rad */
    const double *feed;      /* m/s */
-   const double *seconds;   /* dwell */
-   const int64_t *part;     /* number of the part picked or placed, -1 = none */
-   const char *const *note; /* null = none */
+   const double *seconds;   /* dwell; of a pick or place: after the gripper was switched */
+   const int64_t *part;     /* the part picked, placed or noted, into part_...; -1 = none */
+   const char *const *note; /* null = none; with a part: what it is made of */
    const char *name;        /* the design's name, for a heading */
-   int64_t parts;
+   int64_t parts;           /* of the whole program, in placing order */
    const int32_t *part_feeder;
    const int32_t *part_index; /* 3 per part: lattice index of its first cell */
 } diatom_program;

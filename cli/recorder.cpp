@@ -1,0 +1,143 @@
+#include "cli/recorder.h"
+
+#include "cli/scene_json.h"
+#include "core/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace diatom::cli {
+
+namespace {
+
+std::string headed(const std::string &name, const std::string &unit)
+{
+   return unit.empty() ? name : fmt::format("{} ({})", name, unit);
+}
+
+/// A column group of the state file.
+struct StateColumns
+{
+   const char *output, *unit;
+   std::vector<const char *> names;
+};
+
+const std::array<StateColumns, 5> &stateColumns()
+{
+   static const std::array<StateColumns, 5> kColumns{{{"position", "m", {"x", "y", "z"}},
+                                                      {"rotation", "", {"qw", "qx", "qy", "qz"}},
+                                                      {"velocity", "m/s", {"vx", "vy", "vz"}},
+                                                      {"angular_velocity", "rad/s", {"wx", "wy", "wz"}},
+                                                      {"strain", "", {"strain"}}}};
+   return kColumns;
+}
+
+std::string csvRow(const std::vector<std::string> &fields)
+{
+   return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+} // namespace
+
+Result<Probe> parseProbe(const std::string &text, const Scene &scene)
+{
+   const std::size_t colon = text.rfind(':');
+   if (colon == std::string::npos)
+      return Error{ErrorCode::usage,
+                   fmt::format("--probe \"{}\": write X,Y,Z:CHANNEL, as in 0,13,0:z", text)};
+   const auto index = parseIndex(text.substr(0, colon));
+   if (!index)
+      return Error{ErrorCode::usage, "--probe: " + index.error().message};
+   Probe probe{text, scene.cellAt(*index), text.substr(colon + 1), ""};
+   if (probe.cell < 0)
+      return Error{ErrorCode::usage, fmt::format("--probe \"{}\": there is no cell at that index", text)};
+   std::string known;
+   for (const auto &[channel, unit] : Simulation::probeChannels()) {
+      if (channel == probe.channel) {
+         probe.unit = unit;
+         return probe;
+      }
+      known += " " + channel;
+   }
+   return Error{ErrorCode::usage, fmt::format("--probe \"{}\": the channels are{}", text, known)};
+}
+
+Recorder::Recorder(const std::filesystem::path &file, std::vector<Probe> probes)
+    : m_file(file), m_probes(std::move(probes))
+{
+   std::vector<std::string> names{"time (s)"};
+   for (const Probe &probe : m_probes)
+      names.push_back(fmt::format("\"{}\"", headed(probe.name, probe.unit)));
+   for (const char *energy : {"kinetic", "elastic", "gravity", "contact", "dissipated", "work"})
+      names.push_back(headed(energy, "J"));
+   m_file.write(csvRow(names));
+}
+
+Status Recorder::row(const Simulation &simulation, const Job &job)
+{
+   std::vector<std::string> fields{numberText(simulation.time())};
+   for (const Probe &probe : m_probes) {
+      const auto value = simulation.probe(probe.cell, probe.channel, job);
+      if (!value)
+         return value.error();
+      fields.push_back(numberText(*value));
+   }
+   const auto e = simulation.energy(job);
+   if (!e)
+      return e.error();
+   for (const double value : {e->kinetic, e->elastic, e->gravity, e->contact, e->dissipated, e->work})
+      fields.push_back(numberText(value));
+   m_file.write(csvRow(fields));
+   return {};
+}
+
+Status Recorder::finish(std::string_view mark)
+{
+   if (!mark.empty())
+      m_file.write(fmt::format("# {}\n", mark));
+   return m_file.commit();
+}
+
+Status writeState(const Simulation &simulation, const Model &model, const std::filesystem::path &file,
+                  const Job &job)
+{
+   std::vector<std::vector<double>> data;
+   std::vector<std::string> names{"i", "j", "k", "material"};
+   for (const StateColumns &columns : stateColumns()) {
+      auto values = simulation.output(columns.output, job);
+      if (!values)
+         return values.error();
+      data.push_back(*std::move(values));
+      for (const char *name : columns.names)
+         names.push_back(headed(name, columns.unit));
+   }
+   const bool csv = file.extension() == ".csv";
+   AtomicFile out(file);
+   if (csv)
+      out.write(csvRow(names));
+   const diatom_scene &view = simulation.scene().view();
+   for (std::int64_t cell = 0; cell < view.cells; ++cell) {
+      const Index index = simulation.scene().indices()[static_cast<std::size_t>(cell)];
+      const std::string &material = (*model.materials)[static_cast<std::size_t>(view.cell_material[cell])].id;
+      std::vector<std::string> fields{fmt::to_string(index.x), fmt::to_string(index.y),
+                                      fmt::to_string(index.z), material};
+      nlohmann::ordered_json object{{"cell", toJson(index)}, {"material", material}};
+      for (std::size_t group = 0; group < data.size(); ++group) {
+         const auto width = static_cast<std::int64_t>(stateColumns()[group].names.size());
+         const auto begin = data[group].begin() + cell * width;
+         if (csv)
+            std::transform(begin, begin + width, std::back_inserter(fields), numberText);
+         else if (width == 1)
+            object[stateColumns()[group].output] = *begin;
+         else
+            object[stateColumns()[group].output] = std::vector<double>(begin, begin + width);
+      }
+      out.write(csv ? csvRow(fields) : object.dump() + "\n");
+   }
+   return out.commit();
+}
+
+} // namespace diatom::cli

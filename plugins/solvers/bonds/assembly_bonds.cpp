@@ -1,0 +1,211 @@
+// Bonds of a scene: direction and frame from the rest positions, constants from the two cells' materials as
+// they are turned.
+#include "assembly.h"
+
+#include <algorithm>
+#include <string>
+
+namespace bonds {
+
+using sdk::Failure;
+
+namespace {
+
+/// Stiffness data of one material; explicit constants replace what follows from E and nu.
+struct Stiffness
+{
+   double youngsModulus = 0, poissonRatio = 0, dampingRatio = 0;
+   double axial[3], shear[3][3], bending[3], torsion[3]; // not a number = derive
+   bool explicitConstants = false;
+};
+
+Stiffness readStiffness(const sdk::SceneView &scene, std::int32_t material)
+{
+   const std::string axes = "xyz";
+   Stiffness s;
+   const auto get = [&](const std::string &name) {
+      const double value = scene.property(material, name);
+      if (!std::isnan(value)) {
+         s.explicitConstants = true;
+         if (!(value >= 0) || std::isinf(value))
+            throw Failure(DIATOM_BAD_INPUT, "the constant " + name + " of material " +
+                                                std::to_string(material) + " must not be negative");
+      }
+      return value;
+   };
+   for (std::size_t i = 0; i < 3; ++i) {
+      s.axial[i] = get(std::string("axial_") + axes[i]);
+      s.bending[i] = get(std::string("bending_") + axes[i]);
+      s.torsion[i] = get(std::string("torsion_") + axes[i]);
+      for (std::size_t j = 0; j < 3; ++j)
+         s.shear[i][j] = i == j ? std::nan("") : get(std::string("shear_") + axes[i] + axes[j]);
+   }
+   s.youngsModulus = scene.property(material, "youngs_modulus");
+   s.poissonRatio = scene.property(material, "poisson_ratio");
+   const double zeta = scene.property(material, "damping_ratio");
+   s.dampingRatio = std::isnan(zeta) ? 0 : zeta;
+   if (std::isnan(s.poissonRatio))
+      s.poissonRatio = 0;
+   if (s.dampingRatio < 0 || s.youngsModulus < 0 || std::isinf(s.youngsModulus) || !(s.poissonRatio > -1) ||
+       !(s.poissonRatio <= 0.5))
+      throw Failure(DIATOM_BAD_INPUT,
+                    "material " + std::to_string(material) +
+                        " needs a Young's modulus and a damping ratio that are not negative and a "
+                        "Poisson ratio above -1 and at most 0.5");
+   return s;
+}
+
+/// Which own axis of a turned cell lies along a world direction; -1 when none does.
+int ownAxis(const Mat3 &own, Vec3 world)
+{
+   const Vec3 v = transposed(own, world);
+   const double part[3] = {std::abs(v.x), std::abs(v.y), std::abs(v.z)};
+   for (int k = 0; k < 3; ++k)
+      if (part[k] > 1 - 1e-9)
+         return k;
+   return -1;
+}
+
+void replace(double &value, double constant)
+{
+   if (!std::isnan(constant))
+      value = constant;
+}
+
+/// The half of a bond that lies in `cell`. Constants permute for the turns of a cube; cells and bonds that
+/// lie askew have constants only through E and nu, with a square section as wide as the geometric mean of the
+/// cell's edges.
+HalfBond halfOf(const sdk::SceneView &scene, const Stiffness &s, std::int64_t cell, const Mat3 &frame,
+                double length)
+{
+   const double *e = scene.extent(cell), *q = scene.orientation(cell);
+   const Mat3 own = matrix({q[0], q[1], q[2], q[3]});
+   const int n = ownAxis(own, frame.r0), y = ownAxis(own, frame.r1), z = ownAxis(own, frame.r2);
+   const bool aligned = n >= 0 && y >= 0 && z >= 0;
+   if (s.explicitConstants && !aligned)
+      throw Failure(DIATOM_UNSUPPORTED,
+                    "the cell " + scene.name(cell) +
+                        " has bond constants of its own but lies askew to its bonds: give its "
+                        "material a Young's modulus instead, or turn it by quarter turns only");
+   const double mean = std::cbrt(e[0] * e[1] * e[2]);
+   HalfBond half;
+   if (!std::isnan(s.youngsModulus))
+      half =
+          fromModulus(s.youngsModulus, s.poissonRatio, length, aligned ? e[y] : mean, aligned ? e[z] : mean);
+   else if (!s.explicitConstants)
+      throw Failure(DIATOM_BAD_INPUT, "the material of cell " + scene.name(cell) +
+                                          " has neither a Young's modulus nor bond constants");
+   half.dampingRatio = s.dampingRatio;
+   if (s.explicitConstants) {
+      replace(half.axial, s.axial[n]);
+      replace(half.torsion, s.torsion[n]);
+      replace(half.shear[0], s.shear[n][y]);
+      replace(half.shear[1], s.shear[n][z]);
+      replace(half.bending[0], s.bending[y]);
+      replace(half.bending[1], s.bending[z]);
+   }
+   return half;
+}
+
+/// A right-handed frame with its first row along `direction`.
+Mat3 frameAlong(Vec3 direction)
+{
+   const Vec3 helper = std::abs(direction.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+   Vec3 y = cross(helper, direction);
+   y = (1 / norm(y)) * y;
+   return {direction, y, cross(direction, y)};
+}
+
+struct Direction
+{
+   int axis = 3; // 3 = askew
+   bool reversed = false;
+   Vec3 unit;
+   double length = 0;
+};
+
+Direction directionOf(const Assembly &cells, std::int32_t a, std::int32_t b)
+{
+   const Vec3 d{cells.rest[0][b] - cells.rest[0][a], cells.rest[1][b] - cells.rest[1][a],
+                cells.rest[2][b] - cells.rest[2][a]};
+   Direction out;
+   out.length = norm(d);
+   if (!(out.length > 0))
+      return out;
+   out.unit = (1 / out.length) * d;
+   const double part[3] = {out.unit.x, out.unit.y, out.unit.z};
+   for (int k = 0; k < 3; ++k)
+      if (std::abs(part[k]) > 1 - 1e-12) {
+         out.axis = k;
+         out.reversed = part[k] < 0;
+      }
+   if (out.reversed)
+      out.unit = -out.unit;
+   return out;
+}
+
+double inertiaAbout(const Assembly &cells, std::int32_t cell, Vec3 axis)
+{
+   const Vec3 own = transposed(matrix(cells.orientation[cell]), axis);
+   return cells.boxInertia[0][cell] * own.x * own.x + cells.boxInertia[1][cell] * own.y * own.y +
+          cells.boxInertia[2][cell] * own.z * own.z;
+}
+
+double reduced(double a, double b) { return a * b / (a + b); }
+
+} // namespace
+
+void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
+{
+   std::vector<Stiffness> materials;
+   for (std::int32_t m = 0; m < scene.materials(); ++m)
+      materials.push_back(readStiffness(scene, m));
+   std::vector<Direction> direction;
+   for (std::int64_t i = 0; i < links; ++i) {
+      const std::int32_t ca = scene.linkA(i), cb = scene.linkB(i);
+      if (ca < 0 || cb < 0 || ca >= cells || cb >= cells || ca == cb)
+         throw Failure(DIATOM_BAD_INPUT,
+                       "link " + std::to_string(i) + " does not join two cells of the scene");
+      direction.push_back(directionOf(*this, ca, cb));
+      if (!(direction.back().length > 0))
+         throw Failure(DIATOM_BAD_INPUT, "the cells " + scene.name(ca) + " and " + scene.name(cb) +
+                                             " are joined but lie at the same place");
+   }
+   for (int axis = 0; axis < 4; ++axis) {
+      for (std::int64_t i = 0; i < links; ++i)
+         if (direction[i].axis == axis)
+            link.push_back(i);
+      group[axis + 1] = static_cast<std::int64_t>(link.size());
+   }
+   a.resize(link.size());
+   b.resize(link.size());
+   length.resize(link.size());
+   constants.resize(link.size());
+   bool anyDamping = false;
+   for (std::int64_t i = 0; i < links; ++i) {
+      const Direction &d = direction[link[i]];
+      a[i] = d.reversed ? scene.linkB(link[i]) : scene.linkA(link[i]);
+      b[i] = d.reversed ? scene.linkA(link[i]) : scene.linkB(link[i]);
+      length[i] = d.length;
+      if (d.axis == 3)
+         frame.push_back(frameAlong(d.unit));
+      const Mat3 axes = frameOf(i);
+      const double mu = reduced(mass[a[i]], mass[b[i]]);
+      const double turning[3] = {
+          reduced(inertiaAbout(*this, a[i], axes.r0), inertiaAbout(*this, b[i], axes.r0)),
+          reduced(inertiaAbout(*this, a[i], axes.r1), inertiaAbout(*this, b[i], axes.r1)),
+          reduced(inertiaAbout(*this, a[i], axes.r2), inertiaAbout(*this, b[i], axes.r2))};
+      const HalfBond ha = halfOf(scene, materials[scene.material(a[i])], a[i], axes, d.length);
+      const HalfBond hb = halfOf(scene, materials[scene.material(b[i])], b[i], axes, d.length);
+      constants[i] = compose(ha, hb, d.length, options.beam, true, mu, turning);
+      coupled = coupled || constants[i].s[0] != 0 || constants[i].s[1] != 0;
+      anyDamping = anyDamping || (ha.dampingRatio > 0 && hb.dampingRatio > 0);
+   }
+   damped = damped && anyDamping;
+   if (!damped)
+      for (BondConstants &k : constants)
+         for (int j = 0; j < 3; ++j)
+            k.d[j] = k.e[j] = 0;
+}
+
+} // namespace bonds

@@ -1,0 +1,4 @@
+// The module's one exported symbol.
+#include "bonds_solver.h"
+
+DIATOM_SOLVER(bonds::BondsSolver)

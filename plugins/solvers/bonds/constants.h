@@ -1,0 +1,96 @@
+// Bond constants from what the two cells are made of: half bonds in series, three beam theories.
+#pragma once
+
+#include "bond_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bonds {
+
+enum class Beam { timoshenko, thesis, euler };
+
+/// Constants that a bond of full length l would have if both its halves were like this one.
+struct HalfBond
+{
+   double axial = 0;
+   double shear[2]{};   // along y, z: G A_s / l
+   double bending[2]{}; // about y, z: E I / l
+   double torsion = 0;  // G J / l
+   double dampingRatio = 0;
+};
+
+/// Saint-Venant torsion constant of a rectangle (Timoshenko and Goodier, Theory of Elasticity, article 109).
+/// A square of side a gives 0.1406 a^4, not the polar a^4/6 (amoeba.md 4.1).
+inline double torsionConstant(double a, double b)
+{
+   const double kPi = 3.14159265358979323846;
+   if (a < b)
+      std::swap(a, b);
+   double sum = 0;
+   for (int n = 1; n <= 9; n += 2)
+      sum += std::tanh(n * kPi * a / (2 * b)) / std::pow(n, 5);
+   return a * b * b * b / 3 * (1 - 192 * b / (std::pow(kPi, 5) * a) * sum);
+}
+
+/// A beam of length l and cross section `width` (along y) x `height` (along z); A_s = 5/6 A.
+inline HalfBond fromModulus(double youngsModulus, double poissonRatio, double l, double width, double height)
+{
+   const double area = width * height, shear = youngsModulus / (2 * (1 + poissonRatio));
+   HalfBond half;
+   half.axial = youngsModulus * area / l;
+   half.shear[0] = half.shear[1] = 5.0 / 6 * shear * area / l;
+   half.bending[0] = youngsModulus * area * height * height / (12 * l);
+   half.bending[1] = youngsModulus * area * width * width / (12 * l);
+   half.torsion = shear * torsionConstant(width, height) / l;
+   return half;
+}
+
+/// Two springs of half length in series; two zeros give 0.
+inline double series(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b) : 0; }
+
+/// Stiffness across the bond of a half: plane 0 displaces along y and bends about z, plane 1 along z and
+/// about y.
+inline double transverse(const HalfBond &half, int plane, double l, Beam beam)
+{
+   const double shear = half.shear[plane], bend = 12 * half.bending[1 - plane] / (l * l);
+   if (beam == Beam::thesis)
+      return shear;
+   if (beam == Beam::euler)
+      return bend;
+   return shear + bend > 0 ? shear * bend / (shear + bend) : 0;
+}
+
+/// Composite of halves a and b. The elastic centre s* = (l/4)(kb1 - kb2)/(kb1 + kb2) and 1/kappa* = 1/kappa -
+/// s*^2/kb are the exact stepped beam (validation README, "What to know" 3). `mass` and `inertia` (per bond
+/// axis) are the reduced ones of the free pair: damping is the bond's own, whatever the supports.
+inline BondConstants compose(const HalfBond &a, const HalfBond &b, double l, Beam beam, bool stepped,
+                             double mass, const double (&inertia)[3])
+{
+   const auto damping = [&](double ka, double kb, double m) {
+      return series(2 * a.dampingRatio * std::sqrt(ka * m), 2 * b.dampingRatio * std::sqrt(kb * m));
+   };
+   BondConstants out;
+   out.k[0] = series(a.axial, b.axial);
+   out.d[0] = damping(a.axial, b.axial, mass);
+   out.c[0] = series(a.torsion, b.torsion);
+   out.e[0] = damping(a.torsion, b.torsion, inertia[0]);
+   for (int i = 0; i < 2; ++i) {
+      out.c[1 + i] = series(a.bending[i], b.bending[i]);
+      out.e[1 + i] = damping(a.bending[i], b.bending[i], inertia[1 + i]);
+   }
+   for (int plane = 0; plane < 2; ++plane) {
+      const double ka = transverse(a, plane, l, beam), kb = transverse(b, plane, l, beam);
+      out.k[1 + plane] = series(ka, kb);
+      out.d[1 + plane] = damping(ka, kb, mass);
+      const double ba = a.bending[1 - plane], bb = b.bending[1 - plane];
+      if (!stepped || beam == Beam::thesis || ba == bb || out.k[1 + plane] == 0 || series(ba, bb) == 0)
+         continue;
+      const double s = l / 4 * (ba - bb) / (ba + bb);
+      out.s[plane] = s;
+      out.k[1 + plane] = 1 / (1 / out.k[1 + plane] - s * s / series(ba, bb));
+   }
+   return out;
+}
+
+} // namespace bonds

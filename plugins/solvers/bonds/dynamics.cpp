@@ -1,0 +1,300 @@
+// Semi-implicit Euler, position Verlet and Runge-Kutta 4. Rotations move by the exponential of spin times
+// step; cells that are no cubes keep their angular momentum, not their spin.
+#include "dynamics.h"
+
+namespace bonds {
+
+namespace {
+
+constexpr unsigned kGravity = 1, kDrag = 2, kLoads = 4, kGround = 8;
+
+unsigned effectsOf(const Assembly &assembly)
+{
+   return (assembly.hasGravity ? kGravity : 0) | (assembly.hasDrag ? kDrag : 0) |
+          (assembly.hasLoads ? kLoads : 0) | (assembly.hasGround ? kGround : 0);
+}
+
+/// Keeps a quaternion that is all but unit at length 1.
+Quat renormalised(Quat q)
+{
+   const double f = 1.5 - 0.5 * (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+   return {f * q.w, f * q.x, f * q.y, f * q.z};
+}
+
+} // namespace
+
+template<unsigned... Effects>
+Dynamics::Piece Dynamics::select(unsigned effects, std::integer_sequence<unsigned, Effects...>)
+{
+   static constexpr Piece kTable[] = {&Dynamics::piece<Effects>...};
+   return kTable[effects];
+}
+
+Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Options &options)
+    : m_assembly(&assembly), m_integrator(options.integrator), m_actuation(scene, assembly),
+      m_state(assembly.cells), m_rest(m_actuation.shape()),
+      m_bonds(assembly, m_actuation.active(), options.exact),
+      m_piece(select(effectsOf(assembly), std::make_integer_sequence<unsigned, 16>())),
+      m_sums(static_cast<std::size_t>((assembly.cells + kGrain - 1) / kGrain))
+{
+   const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
+   if (m_integrator == Options::Integrator::rungeKutta) {
+      m_start.resize(m_state.block.size());
+      m_sum.resize(m_state.block.size());
+   } else if (m_integrator == Options::Integrator::verlet && rates) {
+      m_start.resize(static_cast<std::size_t>(6 * assembly.cells));
+   }
+   if (assembly.hasFriction)
+      for (Column &grip : m_state.grip)
+         grip.assign(static_cast<std::size_t>(assembly.cells), 0);
+   if (assembly.hasLoads)
+      setLoads(scene.channel("force", 6));
+   for (std::int64_t i = 0; i < static_cast<std::int64_t>(assembly.velocity.size()); ++i)
+      for (int k = 0; k < 6; ++k)
+         m_state.column(7 + k)[i] = (assembly.fixed[i] >> k & 1) ? 0 : assembly.velocity[i][k];
+}
+
+void Dynamics::setLoads(const sdk::Channel &loads)
+{
+   m_loads.assign(static_cast<std::size_t>(6 * m_assembly->cells), 0);
+   for (std::int64_t i = 0; i < loads.count(); ++i)
+      std::copy_n(loads.row(i), 6, m_loads.begin() + 6 * loads.where(i));
+}
+
+void Dynamics::save(double time, Snapshot &to) const
+{
+   to.state = m_state;
+   to.rest = m_rest;
+   to.actuation = m_actuation;
+   to.dissipated = m_dissipated;
+   to.work = m_work;
+   to.time = time;
+}
+
+void Dynamics::restore(const Snapshot &from)
+{
+   m_state = from.state;
+   m_rest = from.rest;
+   m_actuation = from.actuation;
+   m_dissipated = from.dissipated;
+   m_work = from.work;
+}
+
+template<unsigned Effects>
+void Dynamics::net(std::int64_t i, double ahead, double weight, Vec3 &force, Vec3 &torque, Sums &sums)
+{
+   const Assembly &assembly = *m_assembly;
+   m_bonds.gather(i, force, torque);
+   if constexpr ((Effects & kGravity) != 0) {
+      const double m = assembly.mass[i];
+      force = force + Vec3{m * assembly.gravity[0], m * assembly.gravity[1], m * assembly.gravity[2]};
+   }
+   if constexpr ((Effects & kLoads) != 0) {
+      const double *load = m_loads.data() + 6 * i;
+      force = force + Vec3{load[0], load[1], load[2]};
+      torque = torque + Vec3{load[3], load[4], load[5]};
+   }
+   if constexpr ((Effects & kDrag) != 0) {
+      const Vec3 v = m_state.velocityOf(i), w = m_state.spinOf(i);
+      const Vec3 p = assembly.mass[i] * v, turn = spinMomentum(assembly, i, m_state.turnOf(i), w);
+      force = force - assembly.drag * p;
+      torque = torque - assembly.drag * turn;
+      sums.dissipated += assembly.drag * (dot(p, v) + dot(turn, w)) * weight;
+   }
+   if constexpr ((Effects & kGround) != 0)
+      addContact(assembly, m_state, i, ahead, weight, force, torque, sums);
+}
+
+void Dynamics::kick(std::int64_t i, double dt, Vec3 force, Vec3 torque)
+{
+   const Assembly &assembly = *m_assembly;
+   m_state.velocity(0)[i] += dt * assembly.inverseMass[0][i] * force.x;
+   m_state.velocity(1)[i] += dt * assembly.inverseMass[1][i] * force.y;
+   m_state.velocity(2)[i] += dt * assembly.inverseMass[2][i] * force.z;
+   if (assembly.boxes) {
+      const Quat q = m_state.turnOf(i);
+      m_state.setSpin(
+          i, spinFrom(assembly, i, q, spinMomentum(assembly, i, q, m_state.spinOf(i)) + dt * torque));
+      return;
+   }
+   m_state.spin(0)[i] += dt * assembly.inverseInertia[0][i] * torque.x;
+   m_state.spin(1)[i] += dt * assembly.inverseInertia[1][i] * torque.y;
+   m_state.spin(2)[i] += dt * assembly.inverseInertia[2][i] * torque.z;
+}
+
+void Dynamics::drift(std::int64_t i, double dt)
+{
+   for (int k = 0; k < 3; ++k)
+      m_state.displacement(k)[i] += dt * m_state.velocity(k)[i];
+   const Quat q = m_state.turnOf(i);
+   Vec3 w = m_state.spinOf(i);
+   if (!m_assembly->boxes) {
+      m_state.setTurn(i, renormalised(exponential(dt * w) * q));
+      return;
+   }
+   // Torque-free turn of a box: spin at the middle of the step from its constant angular momentum, second
+   // order.
+   const Vec3 momentum = spinMomentum(*m_assembly, i, q, w);
+   w = spinFrom(*m_assembly, i, exponential((0.5 * dt) * w) * q, momentum);
+   const Quat now = renormalised(exponential(dt * w) * q);
+   m_state.setTurn(i, now);
+   m_state.setSpin(i, spinFrom(*m_assembly, i, now, momentum));
+}
+
+void Dynamics::stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque)
+{
+   const Assembly &assembly = *m_assembly;
+   const Vec3 v = m_state.velocityOf(i), w = m_state.spinOf(i);
+   const Quat q = m_state.turnOf(i), turn = Quat{0, w.x, w.y, w.z} * q;
+   Vec3 spinRate{assembly.inverseInertia[0][i] * torque.x, assembly.inverseInertia[1][i] * torque.y,
+                 assembly.inverseInertia[2][i] * torque.z};
+   if (assembly.boxes)
+      spinRate = spinFrom(assembly, i, q, torque - cross(w, spinMomentum(assembly, i, q, w)));
+   const double rate[13] = {v.x,
+                            v.y,
+                            v.z,
+                            0.5 * turn.w,
+                            0.5 * turn.x,
+                            0.5 * turn.y,
+                            0.5 * turn.z,
+                            assembly.inverseMass[0][i] * force.x,
+                            assembly.inverseMass[1][i] * force.y,
+                            assembly.inverseMass[2][i] * force.z,
+                            spinRate.x,
+                            spinRate.y,
+                            spinRate.z};
+   const bool last = stage.number == 3;
+   for (int k = 0; k < 13; ++k) {
+      const std::int64_t at = k * m_state.n + i;
+      if (stage.number == 0) {
+         m_start[at] = m_state.block[at];
+         m_sum[at] = 0;
+      }
+      m_sum[at] += stage.weight * rate[k];
+      m_state.block[at] = m_start[at] + (last ? dt * m_sum[at] : stage.next * rate[k]);
+   }
+   const Quat now = m_state.turnOf(i);
+   const double f = 1 / std::sqrt(now.w * now.w + now.x * now.x + now.y * now.y + now.z * now.z);
+   m_state.setTurn(i, {f * now.w, f * now.x, f * now.y, f * now.z});
+}
+
+template<unsigned Effects>
+void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t begin, std::int64_t end,
+                     Sums &sums)
+{
+   const auto moveGrip = [&](std::int64_t i, double time) {
+      if constexpr ((Effects & kGround) != 0)
+         if (m_assembly->hasFriction)
+            driftContact(*m_assembly, m_state, i, time, sums);
+   };
+   // Work of the loads over a displacement made at velocity v and spin w.
+   const auto countLoad = [&](std::int64_t i, double time) {
+      if constexpr ((Effects & kLoads) != 0)
+         for (int k = 0; k < 6; ++k)
+            sums.work += time * m_loads[6 * i + k] * m_state.column(7 + k)[i];
+   };
+   const bool predicted = !m_start.empty();
+   for (std::int64_t i = begin; i < end; ++i) {
+      Vec3 force, torque;
+      switch (phase) {
+      case Phase::kickDrift:
+         net<Effects>(i, 0, dt, force, torque, sums);
+         kick(i, dt, force, torque);
+         countLoad(i, dt);
+         moveGrip(i, dt);
+         drift(i, dt);
+         break;
+      case Phase::halfDrift:
+         countLoad(i, 0.5 * dt);
+         moveGrip(i, 0.5 * dt);
+         drift(i, 0.5 * dt);
+         break;
+      case Phase::predict: // velocities in the middle of the step, for what depends on them
+         for (int k = 0; k < 6; ++k)
+            m_start[k * m_state.n + i] = m_state.column(7 + k)[i];
+         net<Effects>(i, 0, 0, force, torque, sums);
+         kick(i, 0.5 * dt, force, torque);
+         break;
+      case Phase::kickHalfDrift:
+         net<Effects>(i, 0, dt, force, torque, sums);
+         if (predicted)
+            for (int k = 0; k < 6; ++k)
+               m_state.column(7 + k)[i] = m_start[k * m_state.n + i];
+         kick(i, dt, force, torque);
+         countLoad(i, 0.5 * dt);
+         moveGrip(i, 0.5 * dt);
+         drift(i, 0.5 * dt);
+         break;
+      case Phase::stage:
+         net<Effects>(i, stage.ahead, dt * stage.weight, force, torque, sums);
+         countLoad(i, dt * stage.weight);
+         if (stage.number == 3)
+            moveGrip(i, dt);
+         stageCell(i, dt, stage, force, torque);
+         break;
+      }
+   }
+}
+
+void Dynamics::cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage)
+{
+   inPieces(call, m_assembly->cells >= kCellsForThreads, m_assembly->cells,
+            [&](std::int64_t begin, std::int64_t end, std::int64_t number) {
+               m_sums[number] = {};
+               (this->*m_piece)(phase, dt, stage, begin, end, m_sums[number]);
+            });
+   for (const Sums &sums : m_sums) {
+      m_dissipated += sums.dissipated;
+      m_work += sums.work;
+   }
+}
+
+void Dynamics::bondForces(const sdk::Call &call, double weight)
+{
+   const double power = m_bonds.run(call, m_state, m_rest);
+   if (m_assembly->damped)
+      m_dissipated += power * weight;
+}
+
+void Dynamics::step(const sdk::Call &call, double time, double dt)
+{
+   if (m_integrator == Options::Integrator::rungeKutta)
+      return rungeKutta(call, time, dt);
+   if (m_integrator == Options::Integrator::verlet)
+      return verlet(call, time, dt);
+   if (m_actuation.active())
+      m_work += m_actuation.moveRest(time, *m_assembly, m_state, m_rest);
+   bondForces(call, dt);
+   cells(call, Phase::kickDrift, dt);
+}
+
+void Dynamics::verlet(const sdk::Call &call, double time, double dt)
+{
+   cells(call, Phase::halfDrift, dt);
+   if (m_actuation.active())
+      m_work += m_actuation.moveRest(time + 0.5 * dt, *m_assembly, m_state, m_rest);
+   if (!m_start.empty()) {
+      bondForces(call, 0);
+      cells(call, Phase::predict, dt);
+   }
+   bondForces(call, dt);
+   cells(call, Phase::kickHalfDrift, dt);
+}
+
+void Dynamics::rungeKutta(const sdk::Call &call, double time, double dt)
+{
+   const Stage stages[4] = {{0, 0, 0.5 * dt, 1.0 / 6},
+                            {1, 0.5 * dt, 0.5 * dt, 1.0 / 3},
+                            {2, 0.5 * dt, dt, 1.0 / 3},
+                            {3, dt, 0, 1.0 / 6}};
+   for (const Stage &stage : stages) {
+      if (m_actuation.active())
+         m_actuation.setRest(time + stage.ahead, m_rest);
+      bondForces(call, dt * stage.weight);
+      cells(call, Phase::stage, dt, stage);
+   }
+   if (m_actuation.active())
+      m_work += m_actuation.moveRest(time + dt, *m_assembly, m_state, m_rest);
+}
+
+} // namespace bonds

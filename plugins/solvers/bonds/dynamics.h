@@ -1,0 +1,75 @@
+// Motion in time: net force of every cell and the integrators. Absent effects are compiled out of the loops.
+#pragma once
+
+#include "contact.h"
+#include "forces.h"
+
+namespace bonds {
+
+class Dynamics
+{
+public:
+   Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Options &options);
+
+   void step(const sdk::Call &call, double time, double dt);
+   void setLoads(const sdk::Channel &loads);
+   void setSources(const sdk::Channel &sources) { m_actuation.setSources(sources); }
+
+   const State &state() const { return m_state; }
+   const RestShape &rest() const { return m_rest; }
+   bool actuated() const { return m_actuation.active(); }
+   double dissipated() const { return m_dissipated; } // J since the start
+   double work() const { return m_work; }             // J since the start
+   void addWork(double joule) { m_work += joule; }
+
+   /// All that changes while stepping, to go back to.
+   struct Snapshot
+   {
+      State state;
+      RestShape rest;
+      Actuation actuation;
+      double dissipated = 0, work = 0, time = 0;
+   };
+   Snapshot snapshot(double time) const { return {m_state, m_rest, m_actuation, m_dissipated, m_work, time}; }
+   void save(double time, Snapshot &to) const;
+   void restore(const Snapshot &from);
+
+private:
+   enum class Phase { kickDrift, halfDrift, predict, kickHalfDrift, stage };
+   struct Stage
+   {
+      int number;
+      double ahead; // s after the start of the step
+      double next;  // s after the start of the step of the following stage
+      double weight;
+   };
+   template<unsigned Effects>
+   void piece(Phase phase, double dt, const Stage &stage, std::int64_t begin, std::int64_t end, Sums &sums);
+   template<unsigned Effects>
+   void net(std::int64_t i, double ahead, double weight, Vec3 &force, Vec3 &torque, Sums &sums);
+   void kick(std::int64_t i, double dt, Vec3 force, Vec3 torque);
+   void drift(std::int64_t i, double dt);
+   void stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque);
+   void cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage = Stage{0, 0, 0, 0});
+   void bondForces(const sdk::Call &call, double weight);
+   void verlet(const sdk::Call &call, double time, double dt);
+   void rungeKutta(const sdk::Call &call, double time, double dt);
+
+   using Piece = void (Dynamics::*)(Phase, double, const Stage &, std::int64_t, std::int64_t, Sums &);
+   template<unsigned... Effects>
+   static Piece select(unsigned effects, std::integer_sequence<unsigned, Effects...>);
+
+   const Assembly *m_assembly;
+   Options::Integrator m_integrator;
+   Actuation m_actuation;
+   State m_state;
+   RestShape m_rest;
+   BondForcesPass m_bonds;
+   Piece m_piece;
+   Column m_loads;        // 6 per cell, empty without loads
+   Column m_start, m_sum; // of Runge-Kutta: 13 per cell; of Verlet with damping: velocities
+   std::vector<Sums> m_sums;
+   double m_dissipated = 0, m_work = 0;
+};
+
+} // namespace bonds

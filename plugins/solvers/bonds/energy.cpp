@@ -1,0 +1,99 @@
+// Sums run in cell and bond order on one thread: they are read seldom, and their order fixes their bits.
+#include "energy.h"
+
+#include <cmath>
+
+namespace bonds {
+
+namespace {
+
+double energyOf(const Assembly &assembly, const Dynamics &dynamics, std::int64_t bond)
+{
+   const Relation r = relate(endsOf(assembly, dynamics.state(), bond));
+   if (dynamics.actuated())
+      return bondEnergy(r, assembly.constants[bond], dynamics.rest().separation(bond),
+                        dynamics.rest().turn(bond));
+   return bondEnergy(r, assembly.constants[bond], {assembly.length[bond], 0, 0}, {});
+}
+
+} // namespace
+
+Energies energies(const Assembly &assembly, const Dynamics &dynamics)
+{
+   const State &state = dynamics.state();
+   Energies out;
+   for (std::int64_t i = 0; i < assembly.cells; ++i) {
+      const Vec3 v = state.velocityOf(i), w = state.spinOf(i), u = state.displacementOf(i);
+      out.kinetic +=
+          0.5 * (assembly.mass[i] * dot(v, v) + dot(w, spinMomentum(assembly, i, state.turnOf(i), w)));
+      if (assembly.hasGravity)
+         out.gravity -=
+             assembly.mass[i] * dot({assembly.gravity[0], assembly.gravity[1], assembly.gravity[2]}, u);
+      if (!assembly.hasGround)
+         continue;
+      const double depth = std::max(0.0, penetration(assembly, state, i));
+      out.contact += 0.5 * assembly.ground.stiffness * depth * depth;
+      if (assembly.hasFriction)
+         out.contact += 0.5 * assembly.ground.stiffness *
+                        (state.grip[0][i] * state.grip[0][i] + state.grip[1][i] * state.grip[1][i]);
+   }
+   for (std::int64_t i = 0; i < assembly.links; ++i)
+      out.elastic += energyOf(assembly, dynamics, i);
+   return out;
+}
+
+Momenta momenta(const Assembly &assembly, const State &state)
+{
+   Momenta out;
+   for (std::int64_t i = 0; i < assembly.cells; ++i) {
+      const Vec3 p = assembly.mass[i] * state.velocityOf(i);
+      const Vec3 at =
+          Vec3{assembly.rest[0][i], assembly.rest[1][i], assembly.rest[2][i]} + state.displacementOf(i);
+      out.linear = out.linear + p;
+      out.angular = out.angular + cross(at, p) + spinMomentum(assembly, i, state.turnOf(i), state.spinOf(i));
+   }
+   return out;
+}
+
+Column strains(const Assembly &assembly, const Dynamics &dynamics)
+{
+   Column out(static_cast<std::size_t>(assembly.cells), 0);
+   for (std::int64_t i = 0; i < assembly.links; ++i) {
+      const double rest = dynamics.actuated() ? dynamics.rest().d[0][i] : assembly.length[i];
+      const Relation r = relate(endsOf(assembly, dynamics.state(), i));
+      const double strain = std::abs(r.u.x - rest) / assembly.length[i];
+      for (const std::int64_t cell : {assembly.a[i], assembly.b[i]})
+         out[cell] = std::max(out[cell], strain);
+   }
+   return out;
+}
+
+std::int64_t worstBond(const Assembly &assembly, const Dynamics &dynamics)
+{
+   std::int64_t worst = -1;
+   double most = -1;
+   for (std::int64_t i = 0; i < assembly.links; ++i) {
+      const double energy = energyOf(assembly, dynamics, i);
+      if (!std::isfinite(energy))
+         return i;
+      if (energy > most) {
+         most = energy;
+         worst = i;
+      }
+   }
+   return worst;
+}
+
+std::int64_t brokenCell(const Assembly &assembly, const State &state)
+{
+   for (std::int64_t i = 0; i < assembly.cells; ++i) {
+      double sum = 0;
+      for (int k = 0; k < 13; ++k)
+         sum += std::abs(state.column(k)[i]);
+      if (!std::isfinite(sum))
+         return i;
+   }
+   return -1;
+}
+
+} // namespace bonds

@@ -1,0 +1,22 @@
+// The largest step that an explicit integrator may take: a guaranteed bound from the eigenvalues of single
+// bonds.
+#pragma once
+
+#include "assembly.h"
+
+namespace bonds {
+
+struct StableStep
+{
+   double step = 0;        // s
+   std::int64_t bond = -1; // that sets it
+   std::int64_t cell = -1; // whose ground contact sets it
+};
+
+/// The result when nothing in the scene limits the step (no stiffness, no damping): a step for accuracy
+/// alone.
+inline constexpr double kFreeStep = 1e-3;
+
+StableStep stableStep(const Assembly &assembly, const Options &options);
+
+} // namespace bonds

@@ -1,0 +1,93 @@
+// What moves: displacement, turn, velocity and spin of every cell as thirteen columns, and where friction
+// holds on.
+#pragma once
+
+#include "assembly.h"
+
+namespace bonds {
+
+/// Displacements from rest keep their digits however far from the origin a part lies.
+struct State
+{
+   explicit State(std::int64_t cells) : n(cells), block(static_cast<std::size_t>(13 * cells))
+   {
+      std::fill_n(column(3), n, 1.0);
+   }
+
+   double *column(int k) { return block.data() + k * n; }
+   const double *column(int k) const { return block.data() + k * n; }
+   double *displacement(int k) { return column(k); }
+   double *velocity(int k) { return column(7 + k); }
+   double *spin(int k) { return column(10 + k); }
+
+   Vec3 displacementOf(std::int64_t i) const { return {column(0)[i], column(1)[i], column(2)[i]}; }
+   Quat turnOf(std::int64_t i) const { return {column(3)[i], column(4)[i], column(5)[i], column(6)[i]}; }
+   Vec3 velocityOf(std::int64_t i) const { return {column(7)[i], column(8)[i], column(9)[i]}; }
+   Vec3 spinOf(std::int64_t i) const { return {column(10)[i], column(11)[i], column(12)[i]}; }
+   void setTurn(std::int64_t i, Quat q)
+   {
+      column(3)[i] = q.w;
+      column(4)[i] = q.x;
+      column(5)[i] = q.y;
+      column(6)[i] = q.z;
+   }
+   void setSpin(std::int64_t i, Vec3 w)
+   {
+      spin(0)[i] = w.x;
+      spin(1)[i] = w.y;
+      spin(2)[i] = w.z;
+   }
+
+   std::int64_t n;
+   Column block;               // u, turn since rest (w x y z), v, w
+   std::array<Column, 2> grip; // m, tangential spring of the ground contact; empty without friction
+};
+
+/// A bond's ends in its own axes.
+inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bond)
+{
+   const Mat3 frame = assembly.frameOf(bond);
+   const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
+   const auto local = [&](Quat q) {
+      const Vec3 v = frame * vec(q);
+      return Quat{q.w, v.x, v.y, v.z};
+   };
+   Ends ends;
+   ends.separation = frame * (state.displacementOf(b) - state.displacementOf(a));
+   ends.separation.x += assembly.length[bond];
+   ends.qa = local(state.turnOf(a));
+   ends.qb = local(state.turnOf(b));
+   ends.dv = frame * (state.velocityOf(b) - state.velocityOf(a));
+   ends.wa = frame * state.spinOf(a);
+   ends.wb = frame * state.spinOf(b);
+   return ends;
+}
+
+/// Inertia tensor of a box cell as it is turned now, and its inverse, applied to a world vector.
+inline Vec3 spinMomentum(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 w)
+{
+   if (!assembly.boxes)
+      return assembly.inertia[i] * w;
+   const Mat3 own = matrix(turn * assembly.orientation[i]);
+   const Vec3 v = transposed(own, w);
+   return own * Vec3{assembly.boxInertia[0][i] * v.x, assembly.boxInertia[1][i] * v.y,
+                     assembly.boxInertia[2][i] * v.z};
+}
+
+inline Vec3 spinFrom(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 momentum)
+{
+   const Mat3 own = matrix(turn * assembly.orientation[i]);
+   const Vec3 v = transposed(own, momentum);
+   Vec3 w = own * Vec3{v.x / assembly.boxInertia[0][i], v.y / assembly.boxInertia[1][i],
+                       v.z / assembly.boxInertia[2][i]};
+   const int held = assembly.fixed[i] >> 3;
+   if (held & 1)
+      w.x = 0;
+   if (held & 2)
+      w.y = 0;
+   if (held & 4)
+      w.z = 0;
+   return w;
+}
+
+} // namespace bonds
