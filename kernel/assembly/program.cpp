@@ -175,9 +175,10 @@ private:
 
    void goHome()
    {
-      if (!m_layout.placings.empty())
-         moveHeight(DIATOM_OP_RAPID, std::max(m_tool.z(), m_top + m_machine.clearance));
       const Vec3 home = m_motion.toolAt(m_motion.home());
+      const double travel = m_top + m_machine.clearance;
+      if (!m_layout.placings.empty() && home.z() < travel)
+         moveHeight(DIATOM_OP_RAPID, travel);
       const Vec3 above(m_tool.x(), m_tool.y(), home.z());
       for (const Vec3 &step : {above, home}) {
          m_length.pathMetres += (step - m_tool).norm();

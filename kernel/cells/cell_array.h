@@ -34,7 +34,8 @@ public:
 
    /// Out of range (core/index.h) does nothing. Setting an empty cell erases.
    void set(Index i, Cell cell);
-   /// Sets every cell of the box; whole bricks and larger blocks are stored as one value.
+   /// Sets every cell of the box; whole bricks and larger blocks are stored as one value,
+   /// so time and memory grow with the surface of the box, not with its volume.
    void fill(const Box &box, Cell cell);
    /// Sets every cell of the box, which must be in range, from as many cells in order x, y, z (z fastest):
    /// the quick way in for importers, several times faster than one by one.

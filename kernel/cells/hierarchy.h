@@ -12,6 +12,10 @@
 
 namespace diatom {
 
+namespace detail {
+class Placing;
+}
+
 /// A logical cell: where it is, what it is, and through which instances it comes (outermost first).
 struct Found
 {
@@ -69,8 +73,16 @@ public:
 
 private:
    struct Summary;
+   class Builder;
+   class Caster;
+
+   bool findIn(const Summary &summary, Index i, std::vector<Placement> &path, Index &local) const;
+   Found found(const std::vector<Placement> &path, Index local) const;
+   bool visitIn(const Summary &summary, const std::vector<Placement> &chain, const Box &box,
+                const std::function<bool(Index, Cell)> &visit) const;
    std::shared_ptr<const Lattice> m_lattice;
    Model m_model;
+   std::shared_ptr<const detail::Placing> m_placing;
    std::map<DefinitionId, std::shared_ptr<const Summary>> m_summaries;
    std::shared_ptr<const Summary> m_root;
 };

@@ -209,11 +209,17 @@ private:
    std::size_t m_at = 0;
 };
 
+bool brickInRange(Index corner)
+{
+   const auto fits = [](std::int32_t v) { return v >= -kIndexLimit - 1 && v <= kIndexLimit; };
+   return fits(corner.x) && fits(corner.y) && fits(corner.z);
+}
+
 /// Puts one record's cells in place; the fault in words, or nothing.
 std::string place(CellArray &cells, const Box &box, std::uint32_t packed, std::size_t materials)
 {
    const Cell cell = Cell::unpacked(packed);
-   if (cell.empty() || cell.material > materials || cell.joins > 3)
+   if (cell.empty() || cell.material > materials || cell.joins > 3 || !inRange(box.min))
       return fmt::format("the cell at [{}, {}, {}] has material {} of {}", box.min.x, box.min.y, box.min.z, cell.material,
                          materials);
    if (box.min == box.max)
@@ -293,7 +299,8 @@ Result<CellArray> unpackCells(std::string_view bytes, std::size_t materials, Cel
       const auto size = static_cast<std::int32_t>(edge == 0 ? kBrick : std::min(edge, std::uint32_t{1} << 30));
       const bool aligned = (size & (size - 1)) == 0 && size >= kBrick && floorMod(corner.x, size) == 0 &&
                            floorMod(corner.y, size) == 0 && floorMod(corner.z, size) == 0;
-      const bool near = inRange(corner);
+      // A brick at the lower border begins one index beyond it; its cells are checked one by one.
+      const bool near = edge == 0 ? brickInRange(corner) : inRange(corner);
       const Index end = near ? corner + Index{size - 1, size - 1, size - 1} : corner;
       if (!in.error.empty() || !aligned || !near || !inRange(end))
          return refuse(in.error.empty() ? "a block lies where none can" : in.error);

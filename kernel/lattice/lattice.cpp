@@ -75,8 +75,10 @@ Index Lattice::nearest(const Vec3 &wanted) const
    Index best;
    double bestDistance = 0;
    bool found = false;
-   const auto consider = [&](Index candidate) {
-      const double distance = (position(candidate) - point).squaredNorm();
+   const auto consider = [&](Index candidate, const Vec3 &offset) {
+      const Vec3 centre =
+          m_basis * Vec3(candidate.x, candidate.y, candidate.z) + offset; // position(), site known
+      const double distance = (centre - point).squaredNorm();
       if (!found || distance < bestDistance - m_tie || (distance <= bestDistance + m_tie && candidate < best))
       {
          best = candidate;
@@ -100,7 +102,8 @@ Index Lattice::nearest(const Vec3 &wanted) const
          for (std::int32_t y = from[1]; y <= to[1]; ++y)
             for (std::int32_t z = from[2]; z <= to[2]; ++z)
                consider({x * m_period[0] + cells.site.x, y * m_period[1] + cells.site.y,
-                         z * m_period[2] + cells.site.z});
+                         z * m_period[2] + cells.site.z},
+                        cells.offset);
    }
    return best;
 }

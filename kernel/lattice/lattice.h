@@ -148,7 +148,7 @@ private:
    struct SiteCells
    {
       Index site;
-      Vec3 start;
+      Vec3 offset, start;
       std::array<double, 3> low{}, high{};
    };
    std::vector<SiteCells> m_siteCells;

@@ -175,7 +175,7 @@ bool LatticeBuilder::addSearch()
       const Index site = indexOf(s);
       const std::array<std::int32_t, 3> at{site.x, site.y, site.z};
       const Vec3 start = m_.m_periodInverse * m_.position(site);
-      Lattice::SiteCells cells{site, start, {}, {}};
+      Lattice::SiteCells cells{site, m_.m_offset[static_cast<std::size_t>(s)], start, {}, {}};
       for (std::size_t k = 0; k < 3; ++k) {
          cells.low[k] = std::ceil((-kIndexLimit - at[k]) / static_cast<double>(m_.m_period[k]));
          cells.high[k] = std::floor((kIndexLimit - at[k]) / static_cast<double>(m_.m_period[k]));

@@ -97,7 +97,7 @@ private:
       void heading(const diatom_program &program)
       {
          text << "(" << commentText(std::string("design ") + (program.name ? program.name : "")) << ")\n";
-         text << "(" << std::to_string(program.parts) << " parts)\n";
+         text << "(parts: " << std::to_string(program.parts) << ")\n";
          text << (machine.m_inch ? "G20\n" : "G21\n") << "G17 G90 G94\n" << machine.m_grip.open << "\n";
       }
 

@@ -1,0 +1,305 @@
+// .diatom documents: exact round trips, the same bytes for the same design, and one sentence for every bad file.
+#include "document/files.h"
+#include "document/json_text.h"
+#include "tests/support/support.h"
+
+#include "core/file.h"
+#include "document/archive.h"
+
+#include <random>
+
+using namespace diatom;
+
+namespace {
+
+Material material(const char *id, ElectricalRole role = ElectricalRole::insulator)
+{
+   Material m;
+   m.id = id;
+   m.name = std::string("Name of ") + id;
+   m.role = role;
+   return m;
+}
+
+/// A design with a value off its default in every field that a document holds.
+Design everything()
+{
+   Design d;
+   d.name = "all \"of\" it, \xc3\xa9";
+   d.model.lattice = {"org.example.lattice.unheard_of", {{"height", 1.28}, {"kind", std::string("tall")}}, 2.5e-4, {1, 2, 0.1}};
+   auto a = material("structural"), b = material("brass", ElectricalRole::conductor), gone = material("gone"),
+        c = material("act", ElectricalRole::actuator);
+   a.color = {1, 0xab, 0xff};
+   a.density = 1.0 / 3;
+   a.youngsModulus = 6.9e10;
+   a.poissonRatio = -0.25;
+   a.dampingRatio = 0.17;
+   a.bonds = BondConstants{{1, 2, 3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-6, 2e-6, 3e-6}, {4e-6, 5e-6, 6e-6}};
+   b.ports = 0x30;
+   c.actuation = {Actuation::Mode::shear, 2, 0.6, true};
+   for (auto &m : {a, gone, b, c})
+      (void)d.model.setMaterial(m);
+   auto palette = *d.model.materials;
+   palette[1] = Material();
+   palette[1].id.clear(); // removed: keeps its place
+   d.model.materials = std::make_shared<const std::vector<Material>>(palette);
+   Definition unit{"unit", "Unit", {9, 8, 7}, {}};
+   unit.body.cells.fill({{0, 0, 0}, {3, 1, 1}}, {1, 0, 0});
+   for (int k = 0; k < 4; ++k)
+      unit.body.cells.set({5, k, 0}, {3, 2, static_cast<std::uint8_t>((k > 0 ? 1 : 0) | (k < 3 ? 2 : 0))});
+   const auto unitId = *d.model.setDefinition(unit);
+   Definition pair{"pair", "Pair", {1, 1, 1}, {}};
+   pair.body.instances.insert({unitId, {0, 0, 0}, 0});
+   pair.body.instances.insert({unitId, {-9, 4, 2}, 5});
+   const auto pairId = *d.model.setDefinition(pair);
+   d.model.root.instances.insert({pairId, {100, -100, 1000000}, 0});
+   d.model.root.cells.set({kIndexLimit, -kIndexLimit, 0}, {4, 23, 0});
+   d.model.root.cells.fill({{-5, -5, -5}, {5, 5, 5}}, {1, 0, 0});
+   d.model.root.cells.set({0, 0, 0}, {});
+   d.setup.gravity = {0.1, -0.0, -9.8};
+   d.setup.supports = {{{-5, -5, -5}, 0x3f}, {{1, 2, 3}, 0x05}};
+   d.setup.loads = {{{5, 5, 5}, {1e-3, 0, 0.1}, {0, 1e-9, 0}}};
+   d.setup.sources = {{{1, 1, 1}, Waveform::saw, 12.5, 0.33, 0.25, true, 3}};
+   d.setup.ground = {true, -5e-4, 999, 0.01, 0.7};
+   d.setup.drag = 3;
+   d.setup.step = 1e-5;
+   d.setup.solver = "org.example.solver.own";
+   d.setup.solverValues = {{"theory", std::string("euler")}};
+   d.setup.effects = {{"damping", false}, {"gravity", true}};
+   d.assembly = {"org.example.parts.p", {{"n", 2.0}}, "org.example.machine.m", {{"feed", 0.01}}};
+   return d;
+}
+
+Result<Opened> read(const std::string &bytes) { return readDesign(bytes, "test.diatom", Job()); }
+
+std::string small(const std::string &insert)
+{
+   return R"({"diatom": 1, "lattice": {"id": "l"}, "materials": [{"id": "a"}, {"id": "b"}])" + insert + "}";
+}
+
+} // namespace
+
+class document_format_test : public QObject
+{
+   Q_OBJECT
+
+private slots:
+   void everyFieldSurvivesBothForms()
+   {
+      const auto design = everything();
+      for (const bool packed : {false, true}) {
+         const auto bytes = writeDesign(design, packed, Job());
+         DIATOM_VERIFY_OK(bytes);
+         const auto opened = read(*bytes);
+         DIATOM_VERIFY_OK(opened);
+         QVERIFY2(opened->notes.empty(), opened->notes.empty() ? "" : opened->notes[0].c_str());
+         QCOMPARE(opened->design.name, design.name);
+         QVERIFY(*opened->design.model.materials == *design.model.materials);
+         QVERIFY(opened->design.model.root == design.model.root);
+         QVERIFY(opened->design.setup == design.setup);
+         QVERIFY(opened->design == design);
+         QCOMPARE(opened->design.hash().text(), design.hash().text());
+         const auto again = writeDesign(opened->design, packed, Job());
+         DIATOM_VERIFY_OK(again);
+         QVERIFY(*again == *bytes);
+      }
+   }
+
+   void cellsAreWrittenAlikeHoweverTheyCameAbout()
+   {
+      std::mt19937 random(20261122);
+      for (int round = 0; round < 20; ++round) {
+         Design one, two;
+         (void)one.model.setMaterial(material("a"));
+         (void)one.model.setMaterial(material("b"));
+         two = one;
+         std::map<Index, Cell> plain;
+         for (int k = 0; k < 60; ++k) {
+            const auto at = [&random] { return static_cast<int>(random() % 50) - 25; };
+            Box box;
+            box.extend(Index{at(), at(), at()});
+            box.extend(box.min + Index{int(random() % 20), int(random() % 20), int(random() % 20)});
+            const Cell cell{static_cast<MaterialIndex>(random() % 3), 0, 0};
+            one.model.root.cells.fill(box, cell);
+            for (int x = box.min.x; x <= box.max.x; ++x)
+               for (int y = box.min.y; y <= box.max.y; ++y)
+                  for (int z = box.min.z; z <= box.max.z; ++z)
+                     plain[{x, y, z}] = cell;
+         }
+         for (auto cell = plain.rbegin(); cell != plain.rend(); ++cell)
+            if (!cell->second.empty())
+               two.model.root.cells.set(cell->first, cell->second);
+         for (const bool packed : {false, true}) {
+            const auto a = writeDesign(one, packed, Job()), b = writeDesign(two, packed, Job());
+            DIATOM_VERIFY_OK(a);
+            QVERIFY(*a == *b);
+            const auto back = read(*a);
+            DIATOM_VERIFY_OK(back);
+            QVERIFY(back->design.model.root.cells == two.model.root.cells);
+         }
+      }
+   }
+
+   void largeUniformBlocksStaySmall()
+   {
+      Design design;
+      (void)design.model.setMaterial(material("a"));
+      design.model.root.cells.fill({{0, 0, 0}, {1023, 1023, 1023}}, {1, 0, 0});
+      const auto bytes = writeDesign(design, true, Job());
+      DIATOM_VERIFY_OK(bytes);
+      QVERIFY(bytes->size() < 2000);
+      const auto back = read(*bytes);
+      DIATOM_VERIFY_OK(back);
+      QCOMPARE(back->design.model.root.cells.count(), std::uint64_t{1} << 30);
+   }
+
+   void savingKeepsTheOldFileWhenItFails()
+   {
+      QTemporaryDir dir;
+      const std::filesystem::path file = dir.filePath("d.diatom").toStdString();
+      DIATOM_VERIFY_OK(saveDesign(everything(), file, Job()));
+      const auto first = readFile(file);
+      Job cancelled;
+      cancelled.cancel();
+      Design large = everything();
+      for (int i = 0; i < 300'000; ++i)
+         large.model.root.cells.set({i % 100, i / 100 % 100, 2 * (i / 10000) + 100}, {1, 0, 0});
+      QVERIFY(!saveDesign(large, file, cancelled).ok());
+      QVERIFY(*readFile(file) == *first);
+      DIATOM_VERIFY_OK(openDesign(file, Job()));
+      const auto nowhere = saveDesign(large, dir.filePath("no/such/folder.diatom").toStdString(), Job());
+      QVERIFY(!nowhere.ok());
+      QCOMPARE(nowhere.error().code, ErrorCode::unwritable);
+   }
+
+   void unknownKeysAreKeptAndWrittenBack()
+   {
+      const auto text = small(R"(, "later": {"x": [1, 2.5, "z"]}, "simulation": {"wind": 3, "drag_1_s": 1})");
+      const auto opened = read(text);
+      DIATOM_VERIFY_OK(opened);
+      QCOMPARE(opened->notes.size(), std::size_t{2});
+      const auto bytes = writeDesign(opened->design, false, Job());
+      DIATOM_VERIFY_OK(bytes);
+      const auto json = nlohmann::json::parse(*bytes);
+      QVERIFY(json["later"] == nlohmann::json::parse(R"({"x": [1, 2.5, "z"]})"));
+      QVERIFY(json["simulation"]["wind"] == 3);
+      const auto again = read(*bytes);
+      DIATOM_VERIFY_OK(again);
+      QVERIFY(again->design == opened->design);
+   }
+
+   void badDocumentsGetOneSentenceWithThePlace_data()
+   {
+      QTest::addColumn<QByteArray>("text");
+      QTest::addColumn<QByteArray>("says");
+      const auto row = [](const char *name, const std::string &text, const char *says) {
+         QTest::newRow(name) << QByteArray(text.data(), static_cast<int>(text.size())) << QByteArray(says);
+      };
+      row("empty", "", "empty");
+      row("garbage", std::string(100, '\x93'), "byte 1");
+      row("truncated", R"({"diatom": 1, "lattice": {)", "complete JSON");
+      row("deep", "{\"diatom\":" + std::string(2'000'000, '['), "64 levels");
+      row("newer", R"({"diatom": 2, "lattice": 7})", "newer version");
+      row("version of a wrong type", R"({"diatom": "one"})", "/diatom");
+      row("no lattice", R"({"diatom": 1, "materials": []})", "/lattice");
+      row("other json", R"({"a": 1})", "no design");
+      row("wrong type", small(R"(, "simulation": {"drag_1_s": "fast"})"), "/simulation/drag_1_s");
+      row("not finite", small(R"(, "simulation": {"drag_1_s": 1e999})"), "1e999");
+      row("negative density", R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a","density_kg_m3":-1}]})", "/materials/0/density_kg_m3");
+      row("two materials", R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a"},{"id":"a"}]})", "two materials");
+      row("unknown material", small(R"(, "assembly": {"cells": [["c", [0,0,0]]]})"), "/assembly/cells/0/0");
+      row("cell twice", small(R"(, "assembly": {"cells": [["a", [0,0,0], [2,2,2]], ["b", [1,1,1]]]})"), "[1, 1, 1] is given twice");
+      row("out of range", small(R"(, "assembly": {"cells": [["a", [4000000000,0,0]]]})"), "/assembly/cells/0/1/0");
+      row("not whole", small(R"(, "assembly": {"cells": [["a", [0.5,0,0]]]})"), "whole number");
+      row("enormous", small(R"(, "assembly": {"cells": [["a", [0,0,0], [1000000000, 1000000000, 1]]]})"), "bricks");
+      row("unknown composite", small(R"(, "assembly": {"instances": [["u", [0,0,0]]]})"), "no composite \"u\"");
+      row("itself", small(R"(, "definitions": [{"id":"u","instances":[["v",[0,0,0]]]},{"id":"v","instances":[["u",[0,0,0]]]}])"), "contains itself");
+      row("support twice", small(R"(, "simulation": {"supports": [{"cell":[0,0,0]},{"cell":[0,0,0]}]})"), "two supports");
+      row("packed elsewhere", small(R"(, "assembly": {"cells": {"packed": "cells/assembly"}})"), "not in the file");
+      auto packed = *writeDesign(everything(), true, Job());
+      row("cut zip", packed.substr(0, packed.size() / 2), "cut short or damaged");
+      row("zip of something else", *writeArchive({{"a.txt", "hello"}}), "document.json");
+      packed[packed.size() / 3] = static_cast<char>(packed[packed.size() / 3] ^ 0x55);
+      row("damaged zip", packed, "damaged");
+   }
+   void badDocumentsGetOneSentenceWithThePlace()
+   {
+      QFETCH(QByteArray, text);
+      QFETCH(QByteArray, says);
+      const auto opened = read(text.toStdString());
+      QVERIFY(!opened.ok());
+      const QByteArray message = QByteArray::fromStdString(opened.error().message);
+      QCOMPARE(opened.error().code, ErrorCode::unreadable);
+      QVERIFY2(message.startsWith("test.diatom: "), message.constData());
+      QVERIFY2(message.contains(says), message.constData());
+      QVERIFY2(message.size() < 400 && !message.contains('\n'), message.constData());
+   }
+
+   void packedCellsOutOfPlaceAreRefused()
+   {
+      const std::string head = R"({"diatom": 1, "lattice": {"id": "l"}, "materials": [{"id": "a"}],
+                                   "assembly": {"cells": {"packed": "c"}}})";
+      for (const std::string &cells : {std::string(), std::string("DIATCEL2"), std::string("DIATCEL1garbage")}) {
+         const auto opened = read(*writeArchive({{"document.json", head}, {"c", cells}}));
+         QVERIFY(!opened.ok());
+         QVERIFY(opened.error().message.find("/assembly/cells: the packed cells") != std::string::npos);
+      }
+   }
+
+   void damagedBytesNeverCrash()
+   {
+      const unsigned seed = 7;
+      qInfo("seed %u", seed);
+      std::mt19937 random(seed);
+      for (const bool packed : {false, true}) {
+         const auto good = *writeDesign(everything(), packed, Job());
+         for (int round = 0; round < 400; ++round) {
+            auto bad = good;
+            for (unsigned k = 0; k < 1 + random() % 4; ++k)
+               bad[random() % bad.size()] = static_cast<char>(random());
+            if (random() % 4 == 0)
+               bad.resize(random() % bad.size());
+            const auto opened = read(bad);
+            if (!opened.ok())
+               QVERIFY(!opened.error().message.empty());
+         }
+      }
+   }
+
+   void filesOfVersionOneStayReadable()
+   {
+      int files = 0;
+      for (const auto &entry : std::filesystem::directory_iterator(test::sourceDir() / "tests/files/v1")) {
+         if (entry.path().extension() != ".diatom")
+            continue;
+         ++files;
+         const auto opened = openDesign(entry.path(), Job());
+         DIATOM_VERIFY_OK(opened);
+         const auto expected = readFile(entry.path().string() + ".hash");
+         DIATOM_VERIFY_OK(expected);
+         QCOMPARE(opened->design.hash().text() + "\n", *expected);
+         const auto bytes = readFile(entry.path());
+         const auto again = writeDesign(opened->design, bytes->starts_with("PK"), Job());
+         DIATOM_VERIFY_OK(again);
+         const auto reread = read(*again);
+         DIATOM_VERIFY_OK(reread);
+         QVERIFY(reread->design == opened->design);
+      }
+      QVERIFY(files >= 2);
+   }
+
+   void aFixtureOfEverythingCanBeMadeOnRequest()
+   {
+      const char *folder = std::getenv("DIATOM_WRITE_FIXTURES");
+      if (!folder)
+         QSKIP("set DIATOM_WRITE_FIXTURES to a folder to write fixtures of the present version there");
+      for (const bool packed : {false, true}) {
+         const auto file = std::filesystem::path(folder) / (packed ? "everything_packed.diatom" : "everything.diatom");
+         DIATOM_VERIFY_OK(writeFileAtomic(file, *writeDesign(everything(), packed, Job())));
+         DIATOM_VERIFY_OK(writeFileAtomic(file.string() + ".hash", everything().hash().text() + "\n"));
+      }
+   }
+};
+
+QTEST_APPLESS_MAIN(document_format_test)
+#include "document_format_test.moc"
