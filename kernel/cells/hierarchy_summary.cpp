@@ -94,8 +94,8 @@ private:
             children.try_emplace(kind.definition, build(kind.definition));
       }
       const bool sameChildren =
-          sameInstances && std::all_of(old->kinds.begin(), old->kinds.end(),
-                                       [&](const auto &k) { return children.at(k.definition) == k.summary; });
+          unmoved && std::all_of(old->kinds.begin(), old->kinds.end(),
+                                 [&](const auto &k) { return children.at(k.definition) == k.summary; });
       if (sameChildren && body.cells.root().same(old->body.cells.root()))
          return old;
       auto summary = std::make_shared<Summary>();

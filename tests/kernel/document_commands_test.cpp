@@ -1,4 +1,5 @@
 // The command table and the edited document: what each command does, refuses and undoes; replay gives the same hash.
+#include "core/file.h"
 #include "document/document.h"
 #include "document/files.h"
 #include "tests/support/support.h"
@@ -315,7 +316,7 @@ private slots:
          }
    }
 
-   void samplesOpen()
+   void samplesAreWhatTheirLogsMake()
    {
       int samples = 0;
       for (const auto &entry : std::filesystem::directory_iterator(test::samplesDir())) {
@@ -328,6 +329,12 @@ private slots:
          const Document document(test::catalogue(), opened->design);
          DIATOM_VERIFY_OK(document.hierarchy());
          QVERIFY((*document.hierarchy())->cells() > 10);
+         auto log = entry.path();
+         const auto text = readFile(log.replace_extension(".log"));
+         DIATOM_VERIFY_OK(text);
+         Document made(test::catalogue(), Design());
+         DIATOM_VERIFY_OK(made.replay(*text, Job()));
+         QVERIFY2(made.design() == opened->design, entry.path().c_str());
       }
       QVERIFY(samples >= 8);
    }

@@ -1,5 +1,5 @@
-// The generic g-code machine: its programs word for word, their counts and path as an independent RS-274 interpreter sees
-// them, and what is refused before anything is written.
+// The generic g-code machine: its programs word for word, their counts and path as an independent RS-274
+// interpreter sees them, and what is refused before anything is written.
 #include "assembly/motion.h"
 #include "assembly/program.h"
 #include "core/file.h"
@@ -39,8 +39,8 @@ Written write(const AssemblyScene &scene, const Values &values = {}, const std::
    if (!plan.ok())
       return {plan.error(), {}};
    std::string text;
-   auto summary = (*machine)->write(*scene.hierarchy, scene.parts, *plan, name,
-                                    [&](std::string_view piece) { text += piece; }, job);
+   auto summary = (*machine)->write(
+       *scene.hierarchy, scene.parts, *plan, name, [&](std::string_view piece) { text += piece; }, job);
    return {std::move(summary), text};
 }
 
@@ -118,7 +118,8 @@ private slots:
             for (const auto &cell : run)
                runs.back().push_back({cell[0], cell[1], cell[2]});
          }
-         const AssemblyScene scene = assemblyOf(test["lattice"], runs, test["materials"], test["material_of"]);
+         const AssemblyScene scene =
+             assemblyOf(test["lattice"], runs, test["materials"], test["material_of"]);
          const Written written = write(scene, values, test["name"]);
          DIATOM_VERIFY_OK(written.summary);
          const std::vector<std::string> expected = test["program"];
@@ -126,9 +127,9 @@ private slots:
          for (std::size_t i = 0; i < std::max(lines.size(), expected.size()); ++i) {
             const std::string is = i < lines.size() ? lines[i] : "(nothing)";
             const std::string should = i < expected.size() ? expected[i] : "(nothing)";
-            QVERIFY2(is == should, ("line " + std::to_string(i + 1) + " of " + test["name"].get<std::string>() +
-                                    ": " + is + " instead of " + should)
-                                      .c_str());
+            QVERIFY2(is == should, ("line " + std::to_string(i + 1) + " of " +
+                                    test["name"].get<std::string>() + ": " + is + " instead of " + should)
+                                       .c_str());
          }
       }
    }
@@ -139,10 +140,22 @@ private slots:
       QTest::addColumn<QString>("grip");
       QTest::addColumn<QString>("close");
       QTest::addColumn<QString>("open");
-      QTest::newRow("mm, output") << "mm" << "M64/M65" << "digital_out" << "digital_out";
-      QTest::newRow("inch, spindle") << "inch" << "M3/M5" << "spindle_cw" << "spindle_off";
-      QTest::newRow("mm, mist") << "mm" << "M7/M9" << "mist_on" << "mist_off";
-      QTest::newRow("mm, flood") << "mm" << "M8/M9" << "flood_on" << "flood_off";
+      QTest::newRow("mm, output") << "mm"
+                                  << "M64/M65"
+                                  << "digital_out"
+                                  << "digital_out";
+      QTest::newRow("inch, spindle") << "inch"
+                                     << "M3/M5"
+                                     << "spindle_cw"
+                                     << "spindle_off";
+      QTest::newRow("mm, mist") << "mm"
+                                << "M7/M9"
+                                << "mist_on"
+                                << "mist_off";
+      QTest::newRow("mm, flood") << "mm"
+                                 << "M8/M9"
+                                 << "flood_on"
+                                 << "flood_off";
    }
 
    void theInterpreterSeesWhatWasPlanned()
@@ -152,10 +165,11 @@ private slots:
       QFETCH(QString, grip);
       const std::int32_t size = 4;
       const AssemblyScene scene = block(size);
-      const Written written = write(scene, {{"unit", unit.toStdString()},
-                                            {"grip", grip.toStdString()},
-                                            {"grip_seconds", 0.25},
-                                            {"decimals", 4.0}},
+      const Written written = write(scene,
+                                    {{"unit", unit.toStdString()},
+                                     {"grip", grip.toStdString()},
+                                     {"grip_seconds", 0.25},
+                                     {"decimals", 4.0}},
                                     "caf\xc3\xa9 (50 %!)");
       DIATOM_VERIFY_OK(written.summary);
       int exitCode = 0;
@@ -165,13 +179,14 @@ private slots:
          QSKIP(("gcode_canon cannot run here: " + why).constData());
       QVERIFY2(exitCode == 0, why + QByteArray::fromStdString(seen.is_discarded() ? "" : seen.dump()));
 
-      // Per part: up, over, down, feed, pick, feed up, and the same again for placing. The first two moves (home) have the
-      // interpreter's own origin to start from; at the end up and sideways home.
+      // Per part: up, over, down, feed, pick, feed up, and the same again for placing. The first two moves
+      // (home) have the interpreter's own origin to start from; at the end up and sideways home.
       const std::int64_t parts = size * size * size;
       QCOMPARE(written.summary->placements, parts);
       QCOMPARE(seen["motions"]["feed"].get<std::int64_t>(), 4 * parts);
       QCOMPARE(seen["motions"]["rapid"].get<std::int64_t>(), 2 + 6 * parts + 2);
-      QCOMPARE(seen["motions"]["zero_length"].get<std::int64_t>(), 1); // home is where the interpreter starts sideways
+      QCOMPARE(seen["motions"]["zero_length"].get<std::int64_t>(),
+               1); // home is where the interpreter starts sideways
       QCOMPARE(seen["dwell_s"].get<double>(), 2 * 0.25 * static_cast<double>(parts));
       QCOMPARE(seen["ended_by"].get<std::string>(), std::string("end word"));
       QFETCH(QString, close);
@@ -186,8 +201,8 @@ private slots:
       QCOMPARE(closed, parts);
       QCOMPARE(opened, parts + 1); // once to begin with
 
-      // Path: the whole length without the first move. Coordinates have four decimals: 1e-4 mm or 2.5e-3 mm at worst for
-      // each of some 640 moves.
+      // Path: the whole length without the first move. Coordinates have four decimals: 1e-4 mm or 2.5e-3 mm
+      // at worst for each of some 640 moves.
       const double path = seen["length"]["rapid"].get<double>() + seen["length"]["feed"].get<double>() -
                           seen["length"]["first_move"].get<double>(); // in mm whatever the program's unit
       QVERIFY2(std::abs(path - 1e3 * written.summary->pathMetres) < 640 * 2.6e-3,
@@ -255,7 +270,8 @@ private slots:
 
    void travelClearsEverythingPlaced()
    {
-      // Reads the program back: whenever the tool moves sideways, it is at least the clearance above all that was placed.
+      // Reads the program back: whenever the tool moves sideways, it is at least the clearance above all that
+      // was placed.
       const AssemblyScene scene = block(5);
       const Written written = write(scene, {{"clearance", 0.003}, {"approach", 0.001}});
       DIATOM_VERIFY_OK(written.summary);
@@ -273,7 +289,8 @@ private slots:
          const std::size_t word = line.find(" Z");
          if (word != std::string::npos)
             z = std::stod(line.substr(word + 2));
-         if (line.starts_with("G") && (line.find(" X") != std::string::npos || line.find(" Y") != std::string::npos))
+         if (line.starts_with("G") &&
+             (line.find(" X") != std::string::npos || line.find(" Y") != std::string::npos))
             QVERIFY2(line.starts_with("G0") && z >= top + 3 - 1e-9, line.c_str());
       }
       QCOMPARE(top, 5.0);
@@ -282,12 +299,13 @@ private slots:
    void eachDirectionOfABrickHasAFeeder()
    {
       const AssemblyScene scene = assemblyOf(
-         kGik, {{{0, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {1, 1, 0}}, {{0, 0, 1}, {1, 0, 1}}}, {"brass"});
+          kGik, {{{0, 0, 0}, {0, 1, 0}}, {{1, 0, 0}, {1, 1, 0}}, {{0, 0, 1}, {1, 0, 1}}}, {"brass"});
       const Written written = write(scene);
       DIATOM_VERIFY_OK(written.summary);
       QVERIFY(written.text.find("(feeder 1 holds brass of length 2 direction 1, ") != std::string::npos);
       QVERIFY(written.text.find("(feeder 2 holds brass of length 2 direction 2, ") != std::string::npos);
-      QVERIFY(written.summary->byMaterial == (std::vector<std::pair<std::string, std::int64_t>>{{"brass", 3}}));
+      QVERIFY(written.summary->byMaterial ==
+              (std::vector<std::pair<std::string, std::int64_t>>{{"brass", 3}}));
    }
 
    void moreKindsThanFeedersAreRefused()
@@ -296,7 +314,7 @@ private slots:
       QVERIFY(!written.summary.ok());
       QVERIFY(written.text.empty());
       QVERIFY2(written.summary.error().message.find("3 kinds of part") != std::string::npos &&
-                  written.summary.error().message.find("2 feeders") != std::string::npos,
+                   written.summary.error().message.find("2 feeders") != std::string::npos,
                written.summary.error().message.c_str());
    }
 
@@ -305,7 +323,8 @@ private slots:
       QTest::addColumn<QString>("parameter");
       QTest::addColumn<double>("value");
       QTest::addColumn<QString>("words");
-      QTest::newRow("part in X") << "origin_x" << 0.398 << "the part at (2, 0, 0) would need the machine's axis X";
+      QTest::newRow("part in X") << "origin_x" << 0.398
+                                 << "the part at (2, 0, 0) would need the machine's axis X";
       QTest::newRow("part below") << "origin_z" << -0.01 << "axis Z -10 mm, outside its range of 0 to 200 mm";
       QTest::newRow("feeder in Y") << "feeder_y" << 0.5 << "feeder 1 would need the machine's axis Y 500 mm";
       QTest::newRow("travel height") << "clearance" << 0.199 << "axis Z";
@@ -328,9 +347,9 @@ private slots:
    void traysAreEmptiedInRowsAndRefilled()
    {
       const AssemblyScene scene =
-         cellsOf(kCube, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}, {6, 0, 0}});
+          cellsOf(kCube, {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {5, 0, 0}, {6, 0, 0}});
       const Written written =
-         write(scene, {{"feeder_columns", 2.0}, {"feeder_rows", 3.0}, {"feeder_pitch", 0.005}});
+          write(scene, {{"feeder_columns", 2.0}, {"feeder_rows", 3.0}, {"feeder_pitch", 0.005}});
       DIATOM_VERIFY_OK(written.summary);
       std::vector<std::string> picks;
       double x = 0, y = 0;
@@ -345,7 +364,7 @@ private slots:
             picks.push_back("refill");
       }
       QVERIFY(picks == std::vector<std::string>(
-                          {"20 20", "25 20", "20 25", "25 25", "20 30", "25 30", "refill", "20 20"}));
+                           {"20 20", "25 20", "20 25", "25 25", "20 30", "25 30", "refill", "20 20"}));
       QCOMPARE(written.summary->problems.size(), std::size_t{1});
       QCOMPARE(written.summary->problems[0].kind, std::string("feeder-refill"));
    }
@@ -361,9 +380,10 @@ private slots:
 
    void timesAreThoseOfTrapezoids()
    {
-      // Rapid 50 mm/s, 500 mm/s2: 40 mm along X take 40/50 + 50/500 = 0.9 s; 2 mm do not reach full speed (ramps take
-      // 5 mm) and take 2 sqrt(2/500) s; feeding 2 mm at 5 mm/s takes 0.4 + 5/500 s. Along the diagonal of X and Y both
-      // axes run at their limits: sqrt(2) times as fast, the same time as along one axis. Exact but for rounding.
+      // Rapid 50 mm/s, 500 mm/s2: 40 mm along X take 40/50 + 50/500 = 0.9 s; 2 mm do not reach full speed
+      // (ramps take 5 mm) and take 2 sqrt(2/500) s; feeding 2 mm at 5 mm/s takes 0.4 + 5/500 s. Along the
+      // diagonal of X and Y both axes run at their limits: sqrt(2) times as fast, the same time as along one
+      // axis. Exact but for rounding.
       Job job;
       const auto machine = Machine::make(*catalogue(), kMachine, {}, job);
       DIATOM_VERIFY_OK(machine);
@@ -378,18 +398,19 @@ private slots:
 
    void pathAndTimeOfOnePartAreTheSumOfItsMoves()
    {
-      // One 1 mm cube, defaults: home (0, 0, 200), travel at 6 (feeder top 1 + clearance 5), feeder (20, 20, 0), target
-      // (100.5, 20.5, 0), approach 2, afterwards travel at 6 again, home. Lengths in mm, hence times by hand.
+      // One 1 mm cube, defaults: home (0, 0, 200), travel at 6 (feeder top 1 + clearance 5), feeder (20, 20,
+      // 0), target (100.5, 20.5, 0), approach 2, and home, up first. Lengths in mm, hence times by hand.
       const Written written = write(cellsOf(kCube, {{3, -8, 2}}));
       DIATOM_VERIFY_OK(written.summary);
-      const double over = std::hypot(20.0, 20.0), across = std::hypot(80.5, 0.5), back = std::hypot(100.5, 20.5);
-      const double path = 194 + over + 4 + 2 + 2 + 4 + across + 4 + 2 + 2 + 4 + 194 + back;
+      const double over = std::hypot(20.0, 20.0), across = std::hypot(80.5, 0.5),
+                   back = std::hypot(100.5, 20.5);
+      const double path = 194 + over + 4 + 2 + 2 + 4 + across + 4 + 2 + 2 + 198 + back;
       QVERIFY(std::abs(1e3 * written.summary->pathMetres - path) < 1e-9);
       const auto rapid = [](double length) { // of the axis that goes furthest
          return length > 5 ? length / 50 + 0.1 : 2 * std::sqrt(length / 500);
       };
-      const double time = rapid(194) + rapid(20) + rapid(4) + 0.41 + 0.5 + 0.41 + rapid(4) + rapid(80.5) + rapid(4) +
-                          0.41 + 0.5 + 0.41 + rapid(4) + rapid(194) + rapid(100.5);
+      const double time = rapid(194) + rapid(20) + rapid(4) + 0.41 + 0.5 + 0.41 + rapid(4) + rapid(80.5) +
+                          rapid(4) + 0.41 + 0.5 + 0.41 + rapid(198) + rapid(100.5);
       QVERIFY2(std::abs(written.summary->seconds - time) < 1e-9,
                qPrintable(QString("%1 s, by hand %2 s").arg(written.summary->seconds).arg(time)));
    }

@@ -1,4 +1,5 @@
-// The running solver: conservation, the same bits whatever does not matter, limits that are named, divergence that is caught.
+// The running solver: conservation, the same bits whatever does not matter, limits that are named, divergence
+// that is caught.
 #include "solver_bonds_scene.h"
 
 #include <random>
@@ -75,20 +76,24 @@ private slots:
    void cancelStopsAtOnce();
 };
 
-/// amoeba.md section 10, 1: forces below 1e-12 of k l. A body that spins rigidly stretches by (omega/omega_elastic)^2; with
-/// 1e-3 rad/s against 1e5 that is 1e-16, so the strain after a third of a turn is rounding.
+/// amoeba.md section 10, 1: forces below 1e-12 of k l. A body that spins rigidly stretches by
+/// (omega/omega_elastic)^2; with 1e-3 rad/s against 1e5 that is 1e-16, so the strain after a third of a turn
+/// is rounding.
 void SolverBondsMotionTest::aTurnedAndMovedBodyStaysUnstrained()
 {
    HandScene scene(1e-3);
-   scene.addMaterial({{"density", 3500}, {"youngs_modulus", 5e9}, {"poisson_ratio", 0.3}, {"damping_ratio", 1}});
+   scene.addMaterial(
+       {{"density", 3500}, {"youngs_modulus", 5e9}, {"poisson_ratio", 0.3}, {"damping_ratio", 1}});
    scene.addBlock(3, 2, 2);
    scene.link();
    scene.effects.push_back("damping");
    const double w[3] = {3, -2, 4};
    for (int i = 0; i < scene.cells(); ++i) {
       const double *p = scene.position.data() + 3 * i;
-      scene.addRow("velocity", {w[1] * p[2] - w[2] * p[1], w[2] * p[0] - w[0] * p[2], w[0] * p[1] - w[1] * p[0], w[0],
-                                w[1], w[2]}, i);
+      scene.addRow(
+          "velocity",
+          {w[1] * p[2] - w[2] * p[1], w[2] * p[0] - w[0] * p[2], w[0] * p[1] - w[1] * p[0], w[0], w[1], w[2]},
+          i);
    }
    Run run(scene);
    QVERIFY2(run.status == DIATOM_OK, run.host.said.c_str());
@@ -110,15 +115,17 @@ void SolverBondsMotionTest::momentumIsConservedToRounding_data()
    QTest::newRow("boxes") << "verlet" << true;
 }
 
-/// c07: 1e-12 of the sums of magnitudes. Runge-Kutta weighs positions at different times, so that its angular momentum is
-/// only fourth order: 1e-6.
+/// c07: 1e-12 of the sums of magnitudes. Runge-Kutta weighs positions at different times, so that its angular
+/// momentum is only fourth order: 1e-6.
 void SolverBondsMotionTest::momentumIsConservedToRounding()
 {
    QFETCH(QString, integrator);
    QFETCH(bool, boxes);
    HandScene scene(1e-3);
-   scene.addMaterial({{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
-   scene.addMaterial({{"density", 900}, {"youngs_modulus", 2e4}, {"poisson_ratio", 0.1}, {"damping_ratio", 0.3}});
+   scene.addMaterial(
+       {{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
+   scene.addMaterial(
+       {{"density", 900}, {"youngs_modulus", 2e4}, {"poisson_ratio", 0.1}, {"damping_ratio", 0.3}});
    for (int i = 0; i < 5; ++i)
       scene.addCell(i, 0, i % 2 == 0 ? 0 : 0, i % 2);
    scene.addCell(2, 1, 0, 1);
@@ -137,7 +144,8 @@ void SolverBondsMotionTest::momentumIsConservedToRounding()
    const std::vector<double> p0(before.begin(), before.begin() + 3), p1(after.begin(), after.begin() + 3);
    const std::vector<double> l0(before.begin() + 3, before.end()), l1(after.begin() + 3, after.end());
    QVERIFY2(relative(p1, p0) < 1e-12, qPrintable(QString::number(relative(p1, p0))));
-   QVERIFY2(relative(l1, l0) < (integrator == "rk4" ? 1e-4 : 1e-11), qPrintable(QString::number(relative(l1, l0))));
+   QVERIFY2(relative(l1, l0) < (integrator == "rk4" ? 1e-4 : 1e-11),
+            qPrintable(QString::number(relative(l1, l0))));
 }
 
 void SolverBondsMotionTest::undampedEnergyDoesNotDrift_data()
@@ -145,15 +153,15 @@ void SolverBondsMotionTest::undampedEnergyDoesNotDrift_data()
    QTest::addColumn<QString>("integrator");
    QTest::addColumn<double>("fraction"); // of the stable step
    QTest::addColumn<double>("bound");
-   // Symplectic steps oscillate by about (w dt / 2) resp. (w dt)^2 / 8 of each mode but do not drift: the bounds are on
-   // means over many periods. Runge-Kutta loses (w dt)^6 / 72 a step.
+   // Symplectic steps oscillate by about (w dt / 2) resp. (w dt)^2 / 8 of each mode but do not drift: the
+   // bounds are on means over many periods. Runge-Kutta loses (w dt)^6 / 72 a step.
    QTest::newRow("semi-implicit") << "semi_implicit" << 0.1 << 5e-3;
    QTest::newRow("verlet") << "verlet" << 0.1 << 5e-4;
    QTest::newRow("rk4") << "rk4" << 0.05 << 1e-3;
 }
 
-/// A free bar that is thrown about until it folds (relative turns beyond a radian): mean energy of the first and last
-/// tenth of 10^5 steps.
+/// A free bar that is thrown about until it folds (relative turns beyond a radian): mean energy of the first
+/// and last tenth of 10^5 steps.
 void SolverBondsMotionTest::undampedEnergyDoesNotDrift()
 {
    QFETCH(QString, integrator);
@@ -197,19 +205,20 @@ void SolverBondsMotionTest::dampedAndDrivenEnergyBalances_data()
 {
    QTest::addColumn<QString>("integrator");
    QTest::addColumn<double>("bound");
-   QTest::newRow("semi-implicit") << "semi_implicit" << 2e-2; // first order at a tenth of the stable step
-   QTest::newRow("verlet") << "verlet" << 1e-3;
-   QTest::newRow("rk4") << "rk4" << 2e-3;
+   QTest::newRow("semi-implicit") << "semi_implicit" << 1e-3; // first order: measured 2e-4
+   QTest::newRow("verlet") << "verlet" << 5e-5; // second order; contact makes no method better: measured 6e-6
+   QTest::newRow("rk4") << "rk4" << 5e-5;
 }
 
-/// Everything at once: gravity, damping, drag, an actuator, a load, ground with friction. The balance, against the energy
-/// that went in.
+/// Everything at once: gravity, damping, drag, an actuator, a load, ground with friction. The balance,
+/// against the energy that went in.
 void SolverBondsMotionTest::dampedAndDrivenEnergyBalances()
 {
    QFETCH(QString, integrator);
    QFETCH(double, bound);
    HandScene scene(1e-3);
-   scene.addMaterial({{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
+   scene.addMaterial(
+       {{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
    scene.addBlock(6, 1, 1);
    scene.addCell(2, 0, 1);
    scene.link();
@@ -236,8 +245,9 @@ void SolverBondsMotionTest::dampedAndDrivenEnergyBalances()
    QVERIFY2(most < bound * in, qPrintable(QString::number(most / in)));
 }
 
-/// amoeba.md section 10, 7: 3.27 mm linear, 3.11 mm with large rotation (dy = -0.43 mm), printed to two decimals. The sheet's
-/// k_bend = k l^2 / 12 and J = 0.1406 l^4 are ours. Linear: gravity scaled to a hundredth, the sag scaled back.
+/// amoeba.md section 10, 7: 3.27 mm linear, 3.11 mm with large rotation (dy = -0.43 mm), printed to two
+/// decimals. The sheet's k_bend = k l^2 / 12 and J = 0.1406 l^4 are ours. Linear: gravity scaled to a
+/// hundredth, the sag scaled back.
 void SolverBondsMotionTest::cantileverSagsAsTheReferenceSays()
 {
    for (const double scale : {1.0, 0.01}) {
@@ -260,7 +270,8 @@ void SolverBondsMotionTest::threadsDoNotChangeABit()
    std::vector<double> first;
    for (const int threads : {1, 2, 3}) {
       HandScene scene(1e-3);
-      scene.addMaterial({{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
+      scene.addMaterial(
+          {{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
       scene.addBlock(14, 14, 14); // above the size from which threads are used
       scene.link();
       kickAll(scene, 0.01);
@@ -369,18 +380,22 @@ void SolverBondsMotionTest::badInputIsRefusedInOneSentence()
    QVERIFY(refused([](HandScene &s) { s.position[3] = 0; }, "same place"));
    QVERIFY(refused([](HandScene &s) { s.position[3] = std::nan(""); }, "position"));
    QVERIFY(refused([](HandScene &s) { s.fix(7); }, "no cell"));
-   QVERIFY(refused([](HandScene &s) { s.addRow("gravity", {0, std::nan(""), 0}); s.effects.push_back("gravity"); },
-                   "no number"));
+   QVERIFY(refused(
+       [](HandScene &s) {
+          s.addRow("gravity", {0, std::nan(""), 0});
+          s.effects.push_back("gravity");
+       },
+       "no number"));
 }
 
-/// A chain along y of cells turned so that their own x lies along y must move as a chain along x of unturned ones. The same
-/// numbers in another order of axes: equal to rounding.
+/// A chain along y of cells turned so that their own x lies along y must move as a chain along x of unturned
+/// ones. The same numbers in another order of axes: equal to rounding.
 void SolverBondsMotionTest::cubeTurnsPermuteTheConstants()
 {
    Props k{{"density", 1000}};
    double value = 100;
-   for (const char *name : {"axial_x", "axial_y", "axial_z", "shear_xy", "shear_xz", "shear_yx", "shear_yz", "shear_zx",
-                            "shear_zy"})
+   for (const char *name : {"axial_x", "axial_y", "axial_z", "shear_xy", "shear_xz", "shear_yx", "shear_yz",
+                            "shear_zx", "shear_zy"})
       k[name] = value += 37;
    for (const char *name : {"bending_x", "bending_y", "bending_z", "torsion_x", "torsion_y", "torsion_z"})
       k[name] = 1e-6 * (value += 37);
@@ -419,15 +434,16 @@ void SolverBondsMotionTest::cubeTurnsPermuteTheConstants()
    QCOMPARE(Run(askew).status, DIATOM_UNSUPPORTED);
 }
 
-/// A chain along (1,1,0)/sqrt 2 of isotropic cubes against one along x: the motion is the same, turned. Section of a cube
-/// askew is the same square.
+/// A chain along (1,1,0)/sqrt 2 of isotropic cubes against one along x: the motion is the same, turned.
+/// Section of a cube askew is the same square.
 void SolverBondsMotionTest::skewLinksWorkLikeAlignedOnes()
 {
    std::vector<double> along, askew;
    const double c = std::sqrt(0.5);
    for (int which = 0; which < 2; ++which) {
       HandScene scene(1e-3);
-      scene.addMaterial({{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.2}});
+      scene.addMaterial(
+          {{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.2}});
       scene.addBlock(4, 1, 1);
       scene.link();
       scene.fix(0);
@@ -439,8 +455,10 @@ void SolverBondsMotionTest::skewLinksWorkLikeAlignedOnes()
             if (i < 3)
                scene.linkAxis[i] = -1;
          }
-      scene.addRow("force", which == 0 ? std::vector<double>{1e-4, 0, 1e-4, 0, 0, 0}
-                                       : std::vector<double>{1e-4 * c, 1e-4 * c, 1e-4, 0, 0, 0}, 3);
+      scene.addRow("force",
+                   which == 0 ? std::vector<double>{1e-4, 0, 1e-4, 0, 0, 0}
+                              : std::vector<double>{1e-4 * c, 1e-4 * c, 1e-4, 0, 0, 0},
+                   3);
       Run run(scene);
       QVERIFY2(run.status == DIATOM_OK, run.host.said.c_str());
       QCOMPARE(run.to(2e-3, 5e-6), DIATOM_OK);
@@ -452,13 +470,14 @@ void SolverBondsMotionTest::skewLinksWorkLikeAlignedOnes()
    }
 }
 
-/// Constant voltage (a square wave that is always high, 0.5 V peak): the free shape follows from amoeba.md 4.2 alone. Settled
-/// by drag; 1e-6 l is what remains of the motion.
+/// Constant voltage (a square wave that is always high, 0.5 V peak): the free shape follows from
+/// amoeba.md 4.2 alone. Settled by drag; 1e-6 l is what remains of the motion.
 void SolverBondsMotionTest::actuatorsReachTheirFreeShape()
 {
    for (int mode = 0; mode < 4; ++mode) {
       HandScene scene(1e-3);
-      scene.addMaterial({{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.5}});
+      scene.addMaterial(
+          {{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.5}});
       scene.addBlock(3, 1, 1);
       scene.link();
       scene.fix(0);
@@ -468,7 +487,7 @@ void SolverBondsMotionTest::actuatorsReachTheirFreeShape()
       scene.addRow("actuator", {double(mode), 0, 0.4, 0, -1}, 1); // strain 0.2 of the middle cell
       Run run(scene);
       QVERIFY2(run.status == DIATOM_OK, run.host.said.c_str());
-      QCOMPARE(run.to(0.1), DIATOM_OK);
+      QCOMPARE(run.to(0.1, 0.05 * run.estimate.stable_step), DIATOM_OK);
       const auto p = run.read("position");
       const auto q = run.read("rotation");
       const double l = 1e-3, a = 0.1; // half of the strain in each bond
@@ -489,7 +508,9 @@ void SolverBondsMotionTest::actuatorsReachTheirFreeShape()
       QVERIFY(std::abs(q[8] - std::cos(angle / 2)) < 1e-6);
       QVERIFY(std::abs(q[mode == 3 ? 9 : 11] - std::sin(angle / 2)) < 1e-6);
       const auto e = run.read("energy");
-      QVERIFY(std::abs(e[4] - e[5]) < 0.05 * e[5]); // all the work was dissipated
+      // All the work of the sudden start was dissipated; its power is summed to first order, at a twentieth
+      // of the limit.
+      QVERIFY2(std::abs(e[4] - e[5]) < 0.06 * e[5], qPrintable(QString::number(e[4] / e[5])));
    }
 }
 

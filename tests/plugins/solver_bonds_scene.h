@@ -125,16 +125,31 @@ public:
          namePointers.push_back(name.c_str());
       channelViews.clear();
       for (const auto &[name, c] : channels)
-         channelViews.push_back({name.c_str(), static_cast<std::int64_t>(c.values.size()) / c.stride, c.stride,
-                                 c.where.empty() ? nullptr : c.where.data(), c.values.data()});
+         channelViews.push_back({name.c_str(), static_cast<std::int64_t>(c.values.size()) / c.stride,
+                                 c.stride, c.where.empty() ? nullptr : c.where.data(), c.values.data()});
       effectPointers.clear();
       for (const std::string &effect : effects)
          effectPointers.push_back(effect.c_str());
-      scene = {sizeof(diatom_scene), pitch, cells(), index.data(), cellMaterial.data(), position.data(),
-               orientation.data(), extent.data(), static_cast<std::int64_t>(linkA.size()), linkA.data(), linkB.data(),
-               linkAxis.data(), static_cast<std::int32_t>(materials.size()), static_cast<std::int32_t>(names.size()),
-               namePointers.data(), values.data(), static_cast<std::int64_t>(channelViews.size()), channelViews.data(),
-               static_cast<std::int64_t>(effectPointers.size()), effectPointers.data()};
+      scene = {sizeof(diatom_scene),
+               pitch,
+               cells(),
+               index.data(),
+               cellMaterial.data(),
+               position.data(),
+               orientation.data(),
+               extent.data(),
+               static_cast<std::int64_t>(linkA.size()),
+               linkA.data(),
+               linkB.data(),
+               linkAxis.data(),
+               static_cast<std::int32_t>(materials.size()),
+               static_cast<std::int32_t>(names.size()),
+               namePointers.data(),
+               values.data(),
+               static_cast<std::int64_t>(channelViews.size()),
+               channelViews.data(),
+               static_cast<std::int64_t>(effectPointers.size()),
+               effectPointers.data()};
       return scene;
    }
 
@@ -189,6 +204,11 @@ public:
       const diatom_values values{sizeof(diatom_values), 5, names, numbers, texts};
       const diatom_create create{sizeof(diatom_create), "org.diatom_cad.solver.bonds", "", &values};
       estimate.size = sizeof estimate;
+      if (!table) {
+         status = DIATOM_INTERNAL;
+         host.said = "plugins/solvers/bonds/bonds.so is not in the build folder that DIATOM_BINARY_DIR names";
+         return;
+      }
       status = table->estimate(&host.call, &create, &scene.view(), &estimate);
       if (status == DIATOM_OK)
          status = table->create(&host.call, &create, &scene.view(), &self);
@@ -214,7 +234,8 @@ public:
       table->outputs(self, &host.call, &outputs);
       for (std::int64_t i = 0; i < outputs->count; ++i)
          if (name == outputs->output[i].name) {
-            std::vector<double> values(static_cast<std::size_t>(outputs->output[i].count * outputs->output[i].stride));
+            std::vector<double> values(
+                static_cast<std::size_t>(outputs->output[i].count * outputs->output[i].stride));
             status = table->read(self, &host.call, i, 0, outputs->output[i].count, values.data());
             return values;
          }

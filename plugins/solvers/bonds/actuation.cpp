@@ -47,7 +47,7 @@ Actuation::Actuation(const sdk::SceneView &scene, const Assembly &assembly)
    m_initial.d[0] = assembly.length;
    for (const std::int64_t bond : m_bonds) {
       m_length.push_back(assembly.length[bond]);
-      m_accounted.push_back({Vec3{assembly.length[bond], 0, 0}, Vec3{}});
+      m_accepted.push_back({Vec3{assembly.length[bond], 0, 0}, Vec3{}});
    }
 }
 
@@ -128,20 +128,27 @@ void Actuation::setRest(double time, RestShape &rest) const
    }
 }
 
-double Actuation::moveRest(double time, const Assembly &assembly, const State &state, RestShape &rest)
+double Actuation::energyChange(const Assembly &assembly, const State &state, const RestShape &rest) const
 {
-   setRest(time, rest);
-   double work = 0;
-   std::size_t i = 0;
-   for (const std::int64_t bond : m_bonds) {
+   double change = 0;
+   for (std::size_t i = 0; i < m_bonds.size(); ++i) {
+      const std::int64_t bond = m_bonds[i];
+      const Vec3 d = rest.separation(bond), phi = rest.turn(bond), oldD = m_accepted[i][0],
+                 oldPhi = m_accepted[i][1];
+      if (d.x == oldD.x && d.y == oldD.y && d.z == oldD.z && phi.x == oldPhi.x && phi.y == oldPhi.y &&
+          phi.z == oldPhi.z)
+         continue;
       const Relation r = relate(endsOf(assembly, state, bond));
-      auto &old = m_accounted[i++];
-      const std::array<Vec3, 2> now{rest.separation(bond), rest.turn(bond)};
       const BondConstants &k = assembly.constants[bond];
-      work += bondEnergy(r, k, now[0], now[1]) - bondEnergy(r, k, old[0], old[1]);
-      old = now;
+      change += bondEnergy(r, k, d, phi) - bondEnergy(r, k, oldD, oldPhi);
    }
-   return work;
+   return change;
+}
+
+void Actuation::accept(const RestShape &rest)
+{
+   for (std::size_t i = 0; i < m_bonds.size(); ++i)
+      m_accepted[i] = {rest.separation(m_bonds[i]), rest.turn(m_bonds[i])};
 }
 
 } // namespace bonds

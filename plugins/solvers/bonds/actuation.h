@@ -31,11 +31,11 @@ public:
    bool active() const { return !m_bonds.empty(); }
    void setSources(const sdk::Channel &sources);
 
-   /// Rest shape for the time; no account of its work.
    void setRest(double time, RestShape &rest) const;
-   /// The same; returns the work (J) that changing the rest shape since the last accounted one does on the
-   /// bonds as they lie now: exactly the change of elastic energy at fixed positions.
-   double moveRest(double time, const Assembly &assembly, const State &state, RestShape &rest);
+   /// Elastic energy (J) that changing the rest shape from the accepted one to `rest` would add, the cells
+   /// held where they are: the actuators' work.
+   double energyChange(const Assembly &assembly, const State &state, const RestShape &rest) const;
+   void accept(const RestShape &rest);
    const RestShape &shape() const { return m_initial; }
 
 private:
@@ -59,7 +59,7 @@ private:
    std::vector<Share> m_shares;
    std::vector<std::int64_t> m_bonds; // driven, ascending
    std::vector<double> m_length;
-   std::vector<std::array<Vec3, 2>> m_accounted;
+   std::vector<std::array<Vec3, 2>> m_accepted; // rest shape whose work is counted
    RestShape m_initial;
 };
 

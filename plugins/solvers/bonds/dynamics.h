@@ -52,6 +52,7 @@ private:
    void stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque);
    void cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage = Stage{0, 0, 0, 0});
    void bondForces(const sdk::Call &call, double weight);
+   void semiImplicit(const sdk::Call &call, double dt);
    void verlet(const sdk::Call &call, double time, double dt);
    void rungeKutta(const sdk::Call &call, double time, double dt);
 
