@@ -30,7 +30,7 @@ struct SimulationPlayer::Run
    std::mutex mutex;
    std::condition_variable wake;
    bool playing = true;                      // guarded
-   std::shared_ptr<const PlayedFrame> frame; // guarded
+   std::shared_ptr<const render::Moment> frame; // guarded
    bool taken = true;                        // guarded: the frame was looked at since it was put
    std::function<void()> announce;           // tells the window that there is a frame
 
@@ -57,7 +57,7 @@ Status SimulationPlayer::Run::publish(const Simulation &simulation, double facto
    auto now = simulation.frame(job);
    if (!now)
       return now.error();
-   auto made = std::make_shared<PlayedFrame>();
+   auto made = std::make_shared<render::Moment>();
    made->frame = std::move(*now);
    if (rest.empty())
       rest = made->frame.position;
@@ -140,7 +140,7 @@ SimulationPlayer::SimulationPlayer(QObject *parent) : QObject(parent) {}
 
 SimulationPlayer::~SimulationPlayer() { reset(); }
 
-std::shared_ptr<const PlayedFrame> SimulationPlayer::frame() const
+std::shared_ptr<const render::Moment> SimulationPlayer::frame() const
 {
    if (!m_run)
       return nullptr;

@@ -5,6 +5,7 @@
 #include "cells/hierarchy.h"
 #include "document/design.h"
 #include "plugins/catalogue.h"
+#include "render/scene_view.h"
 #include "scene/simulation.h"
 
 #include <QObject>
@@ -21,16 +22,6 @@ class QThread;
 
 namespace diatom::gui {
 
-/// A moment of a run. Immutable; shared with the drawing.
-struct PlayedFrame
-{
-   std::shared_ptr<const std::vector<Index>> indices; // of the scene's cells, sorted
-   Frame frame;
-   std::vector<double> displacement; // m, per cell
-   double highest = 0;               // largest displacement of the run so far, m
-   double realTimeFactor = 0;        // simulated over wall time, lately; 0 = not known yet
-};
-
 class SimulationPlayer : public QObject
 {
    Q_OBJECT
@@ -42,7 +33,7 @@ public:
    bool active() const { return m_thread != nullptr; } // a run exists, playing or paused
    bool playing() const { return m_playing; }
    /// The newest frame; null before the first.
-   std::shared_ptr<const PlayedFrame> frame() const;
+   std::shared_ptr<const render::Moment> frame() const;
 
    void play(std::shared_ptr<const Catalogue> catalogue, const Design &design,
              std::shared_ptr<const Hierarchy> hierarchy);

@@ -137,7 +137,7 @@ void Viewport::setGrid(bool on)
    reload();
 }
 
-void Viewport::showFrame(std::shared_ptr<const PlayedFrame> frame, bool byDisplacement)
+void Viewport::showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement)
 {
    const bool moved = frame != nullptr;
    if (moved != m_moved)

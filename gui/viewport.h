@@ -2,10 +2,10 @@
 #pragma once
 
 #include "gui/builder.h"
-#include "gui/scene_view.h"
 #include "gui/session.h"
 #include "render/camera.h"
 #include "render/renderer.h"
+#include "render/scene_view.h"
 
 #include <QElapsedTimer>
 #include <QOpenGLWidget>
@@ -30,7 +30,7 @@ public:
    void setHierarchyView(bool on);
    void setGrid(bool on);
    /// Null: at rest.
-   void showFrame(std::shared_ptr<const PlayedFrame> frame, bool byDisplacement);
+   void showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement);
 
    // For tests and the status bar; read only.
    const Ghost &ghost() const { return m_builder->ghost(); }
@@ -42,7 +42,7 @@ public:
    std::optional<QPointF> screenPosArrow() const;
    Vec3 cellPosition(Index cell) const { return m_scene.position(cell); }
    const render::Camera &camera() const { return m_camera; }
-   const SceneView &scene() const { return m_scene; }
+   const render::SceneView &scene() const { return m_scene; }
    double drawSeconds() const { return m_drawSeconds; }
    QString device() const { return m_device; }
 
@@ -81,7 +81,7 @@ private:
 
    Session *m_session;
    Builder *m_builder;
-   SceneView m_scene;
+   render::SceneView m_scene;
    render::Camera m_camera;
    std::unique_ptr<render::Renderer> m_renderer;
    Drag m_drag = Drag::none;

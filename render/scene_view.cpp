@@ -1,10 +1,10 @@
-#include "gui/scene_view.h"
+#include "render/scene_view.h"
 
 #include "render/design_overlay.h"
 
 #include <algorithm>
 
-namespace diatom::gui {
+namespace diatom::render {
 
 namespace {
 
@@ -31,27 +31,27 @@ void SceneView::setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool compo
    const Lattice &lattice = m_hierarchy->lattice();
    const Model &model = m_hierarchy->model();
    if (grid)
-      m_grid = render::baseGrid(lattice, m_hierarchy->bounds(), {70, 85, 100, 110});
+      m_grid = baseGrid(lattice, m_hierarchy->bounds(), {70, 85, 100, 110});
    const Job job;
    const bool tooMany = m_hierarchy->cells() > kCellBudget;
    m_boxed = (composites || tooMany) && model.root.instances.count() > 0;
    std::shared_ptr<const Lattice> alias(m_hierarchy, &lattice);
-   const Hierarchy own(alias, m_boxed ? render::ownCells(model) : model);
+   const Hierarchy own(alias, m_boxed ? ownCells(model) : model);
    if (own.cells() <= kCellBudget) {
-      if (auto mesh = render::buildCellMesh(own, job, kCellBudget))
+      if (auto mesh = buildCellMesh(own, job, kCellBudget))
          m_mesh = std::move(*mesh);
    } else {
       m_boxed = true;
-      m_boxes = render::blockBoxes(lattice, model);
+      m_boxes = blockBoxes(lattice, model);
    }
    if (m_boxed) {
-      const auto boxes = render::compositeBoxes(lattice, model);
+      const auto boxes = compositeBoxes(lattice, model);
       m_boxes.insert(m_boxes.end(), boxes.begin(), boxes.end());
    }
-   m_bounds = render::worldBounds(lattice, m_hierarchy->bounds());
+   m_bounds = worldBounds(lattice, m_hierarchy->bounds());
 }
 
-void SceneView::setFrame(std::shared_ptr<const PlayedFrame> frame, bool byDisplacement)
+void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement)
 {
    if (frame && (!m_frame || m_frame->indices != frame->indices)) {
       m_sceneCell.clear();
@@ -63,7 +63,7 @@ void SceneView::setFrame(std::shared_ptr<const PlayedFrame> frame, bool byDispla
    m_newFrame = true;
 }
 
-void SceneView::upload(render::Renderer &renderer)
+void SceneView::upload(Renderer &renderer)
 {
    if (m_newMesh) {
       renderer.setCells(m_mesh);
@@ -77,7 +77,7 @@ void SceneView::upload(render::Renderer &renderer)
    m_newMesh = m_newFrame = false;
 }
 
-void SceneView::poses(render::Renderer &renderer)
+void SceneView::poses(Renderer &renderer)
 {
    if (!m_frame) {
       renderer.setPoses({}, {});
@@ -98,18 +98,18 @@ void SceneView::poses(render::Renderer &renderer)
    renderer.setPoses(position, turn);
 }
 
-void SceneView::colors(render::Renderer &renderer)
+void SceneView::colors(Renderer &renderer)
 {
    if (!m_hierarchy)
       return;
    const Model &model = m_hierarchy->model();
-   std::vector<render::Rgba> colors;
+   std::vector<Rgba> colors;
    colors.reserve(m_mesh.cells.size());
    for (std::size_t slot = 0; slot < m_mesh.cells.size(); ++slot) {
       const std::int64_t cell = m_frame && m_byDisplacement ? m_sceneCell[slot] : -1;
       if (cell >= 0) {
          const double value = m_frame->displacement[static_cast<std::size_t>(cell)];
-         colors.push_back(render::fieldColor(m_frame->highest > 0 ? value / m_frame->highest : 0));
+         colors.push_back(fieldColor(m_frame->highest > 0 ? value / m_frame->highest : 0));
          continue;
       }
       const auto &rgb = model.material(m_mesh.material[slot]).color;
@@ -118,10 +118,10 @@ void SceneView::colors(render::Renderer &renderer)
    renderer.setColors(colors);
 }
 
-render::Bounds SceneView::reach() const
+Bounds SceneView::reach() const
 {
-   render::Bounds bounds = m_bounds;
-   for (const render::Line &line : m_grid) {
+   Bounds bounds = m_bounds;
+   for (const Line &line : m_grid) {
       bounds.extend(line.a);
       bounds.extend(line.b);
    }
@@ -141,4 +141,4 @@ Vec3 SceneView::position(Index cell) const
    return m_hierarchy ? m_hierarchy->lattice().position(cell) : Vec3::Zero();
 }
 
-} // namespace diatom::gui
+} // namespace diatom::render
