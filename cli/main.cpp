@@ -8,8 +8,8 @@ using namespace diatom::cli;
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    addInfo,
-    addPlugins,
+    addInfo,    addCheck,   addConvert, addDo,       addExport, addPlan,     addSimulate,
+    addEffects, addCircuit, addPlugins, addLattices, addParts,  addMachines, addSolvers,
 };
 
 } // namespace

@@ -19,6 +19,7 @@ function(diatom_add_plugin folder)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/plugin.json)
 
   add_library(${target} MODULE ${sources})
+  set_property(GLOBAL APPEND PROPERTY DIATOM_PLUGIN_TARGETS ${target})
   target_link_libraries(${target} PRIVATE Diatom::Sdk)
   target_compile_features(${target} PRIVATE cxx_std_20 c_std_11)
   target_compile_definitions(${target} PRIVATE DIATOM_PLUGIN_METADATA="${embedded}")
