@@ -29,8 +29,10 @@ Result<std::pair<int, int>> parseSize(const std::string &text)
    const auto height =
        cross == std::string::npos ? std::nullopt : parseInteger(std::string_view(text).substr(cross + 1));
    if (!width || !height || *width < 16 || *height < 16 || *width > 16384 || *height > 16384)
-      return Error{ErrorCode::usage,
-                   fmt::format("--size: \"{}\" is not WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800", text)};
+      return Error{
+          ErrorCode::usage,
+          fmt::format("--size: \"{}\" is not WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800",
+                      text)};
    return std::pair{int(*width), int(*height)};
 }
 
@@ -62,7 +64,8 @@ Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &inp
    return std::shared_ptr<const render::Moment>(std::move(moment));
 }
 
-Status drawPicture(const Context::Input &input, const Options &options, std::pair<int, int> size, Context &context)
+Status drawPicture(const Context::Input &input, const Options &options, std::pair<int, int> size,
+                   Context &context)
 {
    const bool byDisplacement = options.colour == "displacement";
    render::SceneView view;
@@ -80,7 +83,8 @@ Status drawPicture(const Context::Input &input, const Options &options, std::pai
          return moment.error();
       view.setFrame(*moment, byDisplacement);
       if (byDisplacement)
-         render::addLegend(overlay, camera, render::lengthLegend("displacement", (*moment)->highest), {30, 36, 44, 255});
+         render::addLegend(overlay, camera, render::lengthLegend("displacement", (*moment)->highest),
+                           {30, 36, 44, 255});
    }
    auto offscreen = render::Offscreen::make();
    if (!offscreen)
@@ -132,7 +136,8 @@ void addRender(CLI::App &app, Context &context)
    command->add_option("--view", options->view, "Direction to look from")
        ->check(CLI::IsMember({"iso", "front", "back", "left", "right", "top", "bottom"}))
        ->capture_default_str();
-   command->add_option("--at-time", options->atTime, "Seconds to simulate first")->check(CLI::NonNegativeNumber);
+   command->add_option("--at-time", options->atTime, "Seconds to simulate first")
+       ->check(CLI::NonNegativeNumber);
    command->add_option("--colour,--color", options->colour, "What colours mean; displacement draws a legend")
        ->check(CLI::IsMember({"material", "displacement"}))
        ->capture_default_str();

@@ -1,4 +1,5 @@
-// The one table of what a user can do. Menus, keys, the tool column, the key sheet and the tests are made from it.
+// The one table of what a user can do. Menus, keys, the tool column, the key sheet and the tests are made
+// from it.
 #pragma once
 
 #include <QAction>
@@ -22,7 +23,8 @@ struct ActionInfo
    bool edits = false; // changes the design, so that undo must take it back
 };
 
-/// All of them, in menu order. Entries made at run time (lattices, samples, materials) are added by the main window.
+/// All of them, in menu order. Entries made at run time (lattices, samples, materials) are added by the main
+/// window.
 std::span<const ActionInfo> actionTable();
 
 /// The QActions of the table, with texts, keys, tooltips and object names.

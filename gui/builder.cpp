@@ -47,21 +47,18 @@ void Builder::hover(const render::Ray &ray, double reach, Tool tool)
 {
    const auto &hierarchy = m_session->hierarchy();
    const auto pick = hierarchy ? render::pickPort(*hierarchy, ray, reach) : std::nullopt;
-   const bool same = pick && m_ghost.visible && tool == m_force && pick->hit.has_value() == m_hit.has_value() &&
-                     (pick->hit ? pick->hit->found.index == m_hit->found.index && pick->hit->face == m_hit->face &&
-                                     pick->port == render::Port(m_ghost.port)
-                                : pick->port.cell == m_ghost.port.cell);
-   if (same || (!pick && !m_ghost.visible && !m_hit))
+   if (!pick && !m_ghost.visible)
       return;
-   // A port chosen with the wheel stays while the pointer is on the same face.
-   if (pick && pick->hit && m_hit && m_ghost.visible && tool == m_force &&
-       pick->hit->found.index == m_hit->found.index && pick->hit->face == m_hit->face)
+   // A port chosen with the wheel stays while the pointer is on the same port.
+   if (pick && m_ghost.visible && tool == m_force && pick->port == m_picked)
       return;
    m_force = tool;
    m_hit.reset();
    m_ghost = {};
-   if (pick)
+   if (pick) {
+      m_picked = pick->port;
       showGhost(pick->port, pick->hit);
+   }
    emit changed();
 }
 
@@ -115,10 +112,18 @@ void Builder::act()
       return;
    const Index cell = *m_ghost.cell;
    switch (m_ghost.tool) {
-   case Tool::place: m_session->run("place", {{"cell", asJson(cell)}, {"material", materialName()}}); break;
-   case Tool::erase: m_session->run("erase", {{"cell", asJson(cell)}}); break;
-   case Tool::paint: m_session->run("paint", {{"cell", asJson(cell)}, {"material", materialName()}}); break;
-   case Tool::pick: m_session->setMaterial(m_session->hierarchy()->at(cell).material); break;
+   case Tool::place:
+      m_session->run("place", {{"cell", asJson(cell)}, {"material", materialName()}});
+      break;
+   case Tool::erase:
+      m_session->run("erase", {{"cell", asJson(cell)}});
+      break;
+   case Tool::paint:
+      m_session->run("paint", {{"cell", asJson(cell)}, {"material", materialName()}});
+      break;
+   case Tool::pick:
+      m_session->setMaterial(m_session->hierarchy()->at(cell).material);
+      break;
    }
 }
 
@@ -202,8 +207,8 @@ void Builder::dragPull(const render::Ray &ray)
    const auto ends = arrow(0);
    if (!ends)
       return;
-   const double layers = (heightAlong(ray, ends->first) - m_pullFrom) /
-                         render::layerHeight(m_session->hierarchy()->lattice());
+   const double layers =
+       (heightAlong(ray, ends->first) - m_pullFrom) / render::layerHeight(m_session->hierarchy()->lattice());
    const auto rise = static_cast<std::int32_t>(std::lround(std::clamp(layers, -1e6, 1e6)));
    pull(m_pullTop + rise - m_region->max.z);
 }
@@ -218,9 +223,10 @@ void Builder::addTo(render::Overlay &overlay, double metresPerPixel) const
       const auto [foot, tip] = *arrow(60 * metresPerPixel);
       const double head = 9 * metresPerPixel;
       overlay.lines.push_back({foot, tip, kAdd, 3});
-      for (const Vec3 &side : {Vec3::UnitX(), Vec3::UnitY()})
+      for (const Vec3 &side : {Vec3(1, 0, 0), Vec3(0, 1, 0)})
          for (const double sign : {-1.0, 1.0})
-            overlay.lines.push_back({tip, Vec3(tip + sign * head * side - 1.6 * head * Vec3::UnitZ()), kAdd, 3});
+            overlay.lines.push_back(
+                {tip, Vec3(tip + sign * head * side - 1.6 * head * Vec3::UnitZ()), kAdd, 3});
    }
    if (!m_ghost.visible)
       return;
@@ -249,18 +255,23 @@ QString Builder::address() const
 QString Builder::hint() const
 {
    if (m_region)
-      return tr("Region %1. Drag the arrow or press Up and Down for its height; Enter fills, Delete erases, Esc drops.")
-         .arg(sizeText(*m_region));
+      return tr("Region %1. Drag the arrow or press Up and Down for its height; Enter fills, Delete erases, "
+                "Esc drops.")
+          .arg(sizeText(*m_region));
    if (!m_ghost.visible)
       return {};
    if (!m_ghost.cell)
       return m_ghost.problem;
    const QString cell = QString::fromStdString(render::text(*m_ghost.cell));
    switch (m_ghost.tool) {
-   case Tool::place: return tr("Click: place %1 on %2. Alt+wheel: another port.").arg(cell, address());
-   case Tool::erase: return tr("Click: erase %1.").arg(cell);
-   case Tool::paint: return tr("Click: paint %1.").arg(cell);
-   case Tool::pick: return tr("Click: take the material of %1.").arg(cell);
+   case Tool::place:
+      return tr("Click: place %1 on %2. Alt+wheel: another port.").arg(cell, address());
+   case Tool::erase:
+      return tr("Click: erase %1.").arg(cell);
+   case Tool::paint:
+      return tr("Click: paint %1.").arg(cell);
+   case Tool::pick:
+      return tr("Click: take the material of %1.").arg(cell);
    }
    return {};
 }

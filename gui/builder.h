@@ -1,4 +1,5 @@
-// What the pointer does to a design: hover, click, region. Turns rays into ghosts and into commands; knows no widget.
+// What the pointer does to a design: hover, click, region. Turns rays into ghosts and into commands; knows no
+// widget.
 #pragma once
 
 #include "gui/session.h"
@@ -21,8 +22,8 @@ struct Ghost
    Tool tool = Tool::place;
    std::optional<Index> cell; // that would change; nothing on a dead port
    render::Port port;
-   int corners = 0;           // of the port's outline
-   QString problem;           // why a click does nothing, e.g. "no neighbour here"
+   int corners = 0; // of the port's outline
+   QString problem; // why a click does nothing, e.g. "no neighbour here"
 };
 
 class Builder : public QObject
@@ -74,6 +75,7 @@ private:
    Tool m_tool = Tool::place, m_force = Tool::place;
    Ghost m_ghost;
    std::optional<RayHit> m_hit;
+   render::Port m_picked; // under the pointer; the ghost's may be another by the wheel
    std::optional<Box> m_region;
    Index m_start;
    double m_planeHeight = 0, m_pullFrom = 0;

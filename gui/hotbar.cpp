@@ -8,7 +8,7 @@
 namespace diatom::gui {
 
 Hotbar::Hotbar(Session *session, QWidget *parent)
-   : QWidget(parent), m_session(session), m_layout(new QVBoxLayout(this))
+    : QWidget(parent), m_session(session), m_layout(new QVBoxLayout(this))
 {
    setObjectName(QStringLiteral("hotbar"));
    m_layout->setContentsMargins(6, 6, 6, 6);
@@ -41,7 +41,8 @@ void Hotbar::rebuild()
       button->setIcon(materialIcon(QColor(material.color[0], material.color[1], material.color[2])));
       button->setIconSize({24, 24});
       button->setText(slot <= 9 ? QStringLiteral("%1  %2").arg(slot).arg(name) : name);
-      button->setToolTip(tr("Take %1 in hand%2").arg(name, slot <= 9 ? QStringLiteral(" (%1)").arg(slot) : QString()));
+      button->setToolTip(
+          tr("Take %1 in hand%2").arg(name, slot <= 9 ? QStringLiteral(" (%1)").arg(slot) : QString()));
       button->setAccessibleName(name);
       button->setToolButtonStyle(Qt::ToolButtonTextBesideIcon);
       button->setCheckable(true);

@@ -18,20 +18,25 @@ namespace {
 void screenshotWhenReady(MainWindow &window, const QString &file)
 {
    auto *connection = new QMetaObject::Connection;
-   *connection = QObject::connect(&window.viewport(), &Viewport::framePainted, &window, [&window, file, connection] {
-      if (window.busy() || window.viewport().frameId() < 2) {
-         window.viewport().update();
-         return;
-      }
-      QObject::disconnect(*connection);
-      QMetaObject::invokeMethod(&window, [&window, file] {
-         const bool saved = window.grab().save(file);
-         if (!saved)
-            std::fprintf(stderr, "Cannot write %s; choose a folder that exists and may be written to.\n",
-                         qUtf8Printable(file));
-         QCoreApplication::exit(saved ? 0 : 4);
-      }, Qt::QueuedConnection);
-   });
+   *connection =
+       QObject::connect(&window.viewport(), &Viewport::framePainted, &window, [&window, file, connection] {
+          if (window.busy() || window.viewport().frameId() < 2) {
+             window.viewport().update();
+             return;
+          }
+          QObject::disconnect(*connection);
+          QMetaObject::invokeMethod(
+              &window,
+              [&window, file] {
+                 const bool saved = window.grab().save(file);
+                 if (!saved)
+                    std::fprintf(stderr,
+                                 "Cannot write %s; choose a folder that exists and may be written to.\n",
+                                 qUtf8Printable(file));
+                 QCoreApplication::exit(saved ? 0 : 4);
+              },
+              Qt::QueuedConnection);
+       });
 }
 
 } // namespace
@@ -50,16 +55,21 @@ int main(int argc, char **argv)
 
    QCommandLineParser parser;
    parser.setApplicationDescription(QStringLiteral("Design, simulate and assemble digital materials."));
-   parser.addPositionalArgument(QStringLiteral("FILE"), QStringLiteral("Designs to open, one window each."), QStringLiteral("[FILE...]"));
-   const QCommandLineOption screenshot(QStringLiteral("screenshot"), QStringLiteral("Save a picture of the window and end."), QStringLiteral("PNG"));
-   const QCommandLineOption config(QStringLiteral("config"), QStringLiteral("Folder for settings."), QStringLiteral("DIR"));
+   parser.addPositionalArgument(QStringLiteral("FILE"), QStringLiteral("Designs to open, one window each."),
+                                QStringLiteral("[FILE...]"));
+   const QCommandLineOption screenshot(QStringLiteral("screenshot"),
+                                       QStringLiteral("Save a picture of the window and end."),
+                                       QStringLiteral("PNG"));
+   const QCommandLineOption config(QStringLiteral("config"), QStringLiteral("Folder for settings."),
+                                   QStringLiteral("DIR"));
    parser.addOptions({screenshot, config});
    parser.addHelpOption();
    parser.addVersionOption();
    parser.process(application);
 
-   const QString folder = parser.isSet(config) ? parser.value(config)
-                                               : QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
+   const QString folder = parser.isSet(config)
+                              ? parser.value(config)
+                              : QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
    QSettings settings(folder + QStringLiteral("/studio.ini"), QSettings::IniFormat);
    const auto catalogue = Catalogue::find(Catalogue::defaultFolders());
    std::vector<std::unique_ptr<MainWindow>> windows;

@@ -3,6 +3,7 @@
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QLabel>
+#include <QLocale>
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QStatusBar>
@@ -20,7 +21,7 @@ constexpr int kLayoutVersion = 1;
 } // namespace
 
 MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *settings, QWidget *parent)
-   : QMainWindow(parent), m_settings(settings), m_session(std::move(catalogue)), m_actions(this)
+    : QMainWindow(parent), m_settings(settings), m_session(std::move(catalogue)), m_actions(this)
 {
    setObjectName(QStringLiteral("mainWindow"));
    auto *central = new QWidget(this);
@@ -36,13 +37,15 @@ MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *se
    m_hint = new QLabel(m_viewport);
    m_hint->setObjectName(QStringLiteral("hint"));
    m_hint->setAttribute(Qt::WA_TransparentForMouseEvents);
-   m_hint->setStyleSheet(QStringLiteral("background: rgba(255,255,255,205); color: #1e242c; border-radius: 5px; padding: 4px 8px;"));
+   m_hint->setStyleSheet(QStringLiteral(
+       "background: rgba(255,255,255,205); color: #1e242c; border-radius: 5px; padding: 4px 8px;"));
    m_hint->hide();
 
    m_hotbar = new Hotbar(&m_session, this);
    auto *dock = new QDockWidget(tr("Materials"), this);
    dock->setObjectName(QStringLiteral("materialsDock"));
-   dock->setFeatures(QDockWidget::DockWidgetMovable); // floating docks cannot be put back on Wayland (QTBUG-87332)
+   dock->setFeatures(
+       QDockWidget::DockWidgetMovable); // floating docks cannot be put back on Wayland (QTBUG-87332)
    dock->setWidget(m_hotbar);
    addDockWidget(Qt::RightDockWidgetArea, dock);
 
@@ -72,8 +75,10 @@ void MainWindow::makeMenus()
       const char *id;
       QString title;
    };
-   for (const auto &[id, title] : {Menu{"file", tr("&File")}, Menu{"edit", tr("&Edit")}, Menu{"view", tr("&View")},
-                                   Menu{"simulate", tr("&Simulate")}, Menu{"help", tr("&Help")}}) {
+   for (const auto &[id, title] :
+        {Menu{"file", tr("&File")}, Menu{"edit", tr("&Edit")}, Menu{"view", tr("&View")},
+         Menu{"simulate", tr("&Simulate")}, Menu{"help", tr("&Help")}})
+   {
       QMenu *menu = menuBar()->addMenu(title);
       menu->setObjectName(QStringLiteral("menu.%1").arg(QString::fromUtf8(id)));
       menu->setToolTipsVisible(true);
@@ -197,9 +202,11 @@ void MainWindow::connectActions()
                                   std::pair{"tool.paint", Tool::paint}, std::pair{"tool.pick", Tool::pick}})
       on(id, [this, t = tool] { m_viewport->builder().setTool(t); });
    for (const char *name : {"iso", "front", "back", "left", "right", "top", "bottom"})
-      on(std::string("view.") + name, [this, direction = *render::viewDirection(name)] { m_viewport->look(direction); });
+      on(std::string("view.") + name,
+         [this, direction = *render::viewDirection(name)] { m_viewport->look(direction); });
    on("view.fit", [this] { m_viewport->fit(); });
-   on("view.orthographic", [this] { m_viewport->setOrthographic(m_actions["view.orthographic"]->isChecked()); });
+   on("view.orthographic",
+      [this] { m_viewport->setOrthographic(m_actions["view.orthographic"]->isChecked()); });
    on("view.grid", [this] { m_viewport->setGrid(m_actions["view.grid"]->isChecked()); });
    on("view.cells", [this] { m_viewport->setHierarchyView(false); });
    on("view.hierarchy", [this] { m_viewport->setHierarchyView(true); });
@@ -214,7 +221,8 @@ void MainWindow::connectViews()
 {
    const auto showError = [this](const QString &text) { m_messages->showMessage(text, true); };
    connect(&m_session, &Session::failed, this, showError);
-   connect(&m_session, &Session::noted, this, [this](const QString &text) { m_messages->showMessage(text, false); });
+   connect(&m_session, &Session::noted, this,
+           [this](const QString &text) { m_messages->showMessage(text, false); });
    connect(&m_session, &Session::designChanged, this, [this] {
       editStarted();
       updateActions();
@@ -228,9 +236,8 @@ void MainWindow::connectViews()
       placeOverlays();
       updateActions();
    });
-   connect(m_viewport, &Viewport::framePainted, this, [this] {
-      m_speed->setText(tr("%1 ms").arg(1e3 * m_viewport->drawSeconds(), 0, 'f', 1));
-   });
+   connect(m_viewport, &Viewport::framePainted, this,
+           [this] { m_speed->setText(tr("%1 ms").arg(1e3 * m_viewport->drawSeconds(), 0, 'f', 1)); });
    connect(&m_player, &SimulationPlayer::frameReady, this, &MainWindow::showFrame);
    connect(&m_player, &SimulationPlayer::failed, this, showError);
    connect(&m_player, &SimulationPlayer::stateChanged, this, [this] {
@@ -295,8 +302,8 @@ void MainWindow::updateCounts()
    const auto perMaterial = m_session.hierarchy()->countByMaterial();
    const auto used = std::count_if(perMaterial.begin(), perMaterial.end(), [](auto n) { return n > 0; });
    m_counts->setText(tr("%1 cells, %2 materials")
-                        .arg(QLocale().toString(static_cast<qulonglong>(m_session.hierarchy()->cells())))
-                        .arg(used));
+                         .arg(QLocale().toString(static_cast<qulonglong>(m_session.hierarchy()->cells())))
+                         .arg(used));
 }
 
 void MainWindow::updateRun()
@@ -307,7 +314,8 @@ void MainWindow::updateRun()
       return;
    }
    QString text = tr("t %1 s").arg(frame->frame.time, 0, 'f', 3);
-   text += frame->realTimeFactor > 0 ? tr(", %1x real time").arg(frame->realTimeFactor, 0, 'g', 3) : QString();
+   text +=
+       frame->realTimeFactor > 0 ? tr(", %1x real time").arg(frame->realTimeFactor, 0, 'g', 3) : QString();
    m_run->setText(m_player.playing() ? text : text + tr(", paused"));
 }
 

@@ -1,4 +1,5 @@
-// The studio's window: menus and tool column from the action table, viewport, hotbar, status bar, and the wiring.
+// The studio's window: menus and tool column from the action table, viewport, hotbar, status bar, and the
+// wiring.
 #pragma once
 
 #include "gui/actions.h"

@@ -21,21 +21,26 @@ std::vector<std::filesystem::path> MainWindow::sampleFolders()
    const std::filesystem::path bin = QCoreApplication::applicationDirPath().toStdString();
    std::vector<std::filesystem::path> folders;
    if (qEnvironmentVariableIsSet("DIATOM_SOURCE_DIR"))
-      folders.emplace_back(std::filesystem::path(qgetenv("DIATOM_SOURCE_DIR").toStdString()) / "resources" / "samples");
+      folders.emplace_back(std::filesystem::path(qgetenv("DIATOM_SOURCE_DIR").toStdString()) / "resources" /
+                           "samples");
    folders.push_back(bin / ".." / "share" / "diatom" / "samples");
-   folders.push_back(bin / ".." / ".." / ".." / "resources" / "samples"); // build/<preset>/bin in a source tree
+   folders.push_back(bin / ".." / ".." / ".." / "resources" /
+                     "samples"); // build/<preset>/bin in a source tree
    return folders;
 }
 
 QString MainWindow::lastFolder(const char *purpose) const
 {
-   return m_settings ? m_settings->value(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose))).toString() : QString();
+   return m_settings
+              ? m_settings->value(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose))).toString()
+              : QString();
 }
 
 void MainWindow::rememberFolder(const char *purpose, const QString &file)
 {
    if (m_settings)
-      m_settings->setValue(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose)), QFileInfo(file).path());
+      m_settings->setValue(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose)),
+                           QFileInfo(file).path());
 }
 
 bool MainWindow::mayDiscard()
@@ -53,15 +58,16 @@ void MainWindow::open(const std::filesystem::path &file)
    auto result = std::make_shared<std::optional<Result<Opened>>>();
    const QString name = QString::fromStdString(file.filename().string());
    const bool started = m_task->start(
-      tr("Opening %1").arg(name), [result, file](const Job &job) { result->emplace(openDesign(file, job)); },
-      [this, result, file] {
-         if (result->value().ok())
-            m_session.take(std::move(**result).value(), file);
-         else if (result->value().error().code != ErrorCode::cancelled)
-            m_messages->showMessage(QString::fromStdString(result->value().error().message), true);
-      });
+       tr("Opening %1").arg(name), [result, file](const Job &job) { result->emplace(openDesign(file, job)); },
+       [this, result, file] {
+          if (result->value().ok())
+             m_session.take(std::move(**result).value(), file);
+          else if (result->value().error().code != ErrorCode::cancelled)
+             m_messages->showMessage(QString::fromStdString(result->value().error().message), true);
+       });
    if (!started)
-      m_messages->showMessage(tr("Something is still being read or written; wait for it or cancel it."), true);
+      m_messages->showMessage(tr("Something is still being read or written; wait for it or cancel it."),
+                              true);
 }
 
 void MainWindow::chooseAndOpen()
@@ -80,7 +86,8 @@ bool MainWindow::save(bool elsewhere)
 {
    std::filesystem::path file = m_session.file();
    if (elsewhere || file.empty()) {
-      QString chosen = QFileDialog::getSaveFileName(this, tr("Save"), lastFolder("design"), tr("Diatom (*.diatom)"));
+      QString chosen =
+          QFileDialog::getSaveFileName(this, tr("Save"), lastFolder("design"), tr("Diatom (*.diatom)"));
       if (chosen.isEmpty())
          return false;
       if (QFileInfo(chosen).suffix().isEmpty())
@@ -95,7 +102,8 @@ void MainWindow::exportStl()
 {
    if (!m_session.hierarchy())
       return;
-   QString chosen = QFileDialog::getSaveFileName(this, tr("Export STL"), lastFolder("export"), tr("STL (*.stl)"));
+   QString chosen =
+       QFileDialog::getSaveFileName(this, tr("Export STL"), lastFolder("export"), tr("STL (*.stl)"));
    if (chosen.isEmpty())
       return;
    if (QFileInfo(chosen).suffix().isEmpty())
@@ -103,22 +111,23 @@ void MainWindow::exportStl()
    rememberFolder("export", chosen);
    auto result = std::make_shared<std::optional<Result<StlReport>>>();
    const bool started = m_task->start(
-      tr("Writing %1").arg(QFileInfo(chosen).fileName()),
-      [result, hierarchy = m_session.hierarchy(), file = chosen.toStdString()](const Job &job) {
-         result->emplace(writeStl(*hierarchy, nullptr, {}, file, job));
-      },
-      [this, result] {
-         const auto &written = result->value();
-         if (written.ok())
-            m_messages->showMessage(tr("Wrote %1 with %2 triangles.")
-                                       .arg(QString::fromStdString(written->file.string()))
-                                       .arg(written->triangles),
-                                    false);
-         else if (written.error().code != ErrorCode::cancelled)
-            m_messages->showMessage(QString::fromStdString(written.error().message), true);
-      });
+       tr("Writing %1").arg(QFileInfo(chosen).fileName()),
+       [result, hierarchy = m_session.hierarchy(), file = chosen.toStdString()](const Job &job) {
+          result->emplace(writeStl(*hierarchy, nullptr, {}, file, job));
+       },
+       [this, result] {
+          const auto &written = result->value();
+          if (written.ok())
+             m_messages->showMessage(tr("Wrote %1 with %2 triangles.")
+                                         .arg(QString::fromStdString(written->file.string()))
+                                         .arg(written->triangles),
+                                     false);
+          else if (written.error().code != ErrorCode::cancelled)
+             m_messages->showMessage(QString::fromStdString(written.error().message), true);
+       });
    if (!started)
-      m_messages->showMessage(tr("Something is still being read or written; wait for it or cancel it."), true);
+      m_messages->showMessage(tr("Something is still being read or written; wait for it or cancel it."),
+                              true);
 }
 
 void MainWindow::showKeys()
@@ -128,15 +137,15 @@ void MainWindow::showKeys()
    dialog->setAttribute(Qt::WA_DeleteOnClose);
    dialog->setWindowTitle(tr("Keys and mouse"));
    const std::pair<QString, QString> mouse[] = {
-      {tr("Left click"), tr("Use the tool")},
-      {tr("Ctrl + left click"), tr("The opposite of the tool: erase instead of place")},
-      {tr("Alt + left click"), tr("Take the material under the pointer in hand")},
-      {tr("Shift + left drag"), tr("Region; drag its arrow or press Up and Down for the height")},
-      {tr("Right drag"), tr("Turn the view about the cell under the pointer")},
-      {tr("Middle drag, Space + left drag"), tr("Move the view")},
-      {tr("Wheel"), tr("Zoom to the pointer")},
-      {tr("Alt + wheel"), tr("Go through the cell's ports, hidden ones included")},
-      {tr("1 to 9"), tr("Take a material in hand")}};
+       {tr("Left click"), tr("Use the tool")},
+       {tr("Ctrl + left click"), tr("The opposite of the tool: erase instead of place")},
+       {tr("Alt + left click"), tr("Take the material under the pointer in hand")},
+       {tr("Shift + left drag"), tr("Region; drag its arrow or press Up and Down for the height")},
+       {tr("Right drag"), tr("Turn the view about the cell under the pointer")},
+       {tr("Middle drag, Space + left drag"), tr("Move the view")},
+       {tr("Wheel"), tr("Zoom to the pointer")},
+       {tr("Alt + wheel"), tr("Go through the cell's ports, hidden ones included")},
+       {tr("1 to 9"), tr("Take a material in hand")}};
    auto *table = new QTableWidget(0, 2, dialog);
    table->setHorizontalHeaderLabels({tr("Input"), tr("Does")});
    table->verticalHeader()->hide();
@@ -163,9 +172,10 @@ void MainWindow::showKeys()
 
 void MainWindow::showAbout()
 {
-   m_messages->showMessage(tr("Diatom %1: design, simulate and assemble digital materials. Apache licence 2.0. Drawing with %2.")
-                              .arg(QCoreApplication::applicationVersion(), m_viewport->device()),
-                           false);
+   m_messages->showMessage(
+       tr("Diatom %1: design, simulate and assemble digital materials. Apache licence 2.0. Drawing with %2.")
+           .arg(QCoreApplication::applicationVersion(), m_viewport->device()),
+       false);
 }
 
 } // namespace diatom::gui

@@ -5,7 +5,7 @@
 namespace diatom::gui {
 
 Session::Session(std::shared_ptr<const Catalogue> catalogue, QObject *parent)
-   : QObject(parent), m_catalogue(std::move(catalogue))
+    : QObject(parent), m_catalogue(std::move(catalogue))
 {
    replace(defaultDesign(LatticeSpec{}.id));
 }
@@ -22,7 +22,8 @@ QString Session::stateHash() const { return QString::fromStdString(design().hash
 void Session::setMaterial(MaterialIndex material)
 {
    const auto &materials = *design().model.materials;
-   if (material == m_material || material == 0 || material > materials.size() || materials[material - 1].id.empty())
+   if (material == m_material || material == 0 || material > materials.size() ||
+       materials[material - 1].id.empty())
       return;
    m_material = material;
    emit materialChanged();

@@ -1,5 +1,5 @@
-// The open document with its file, its hierarchy and the material in hand. Every change of the design goes through
-// run(), which is a command of the kernel's table; widgets only watch.
+// The open document with its file, its hierarchy and the material in hand. Every change of the design goes
+// through run(), which is a command of the kernel's table; widgets only watch.
 #pragma once
 
 #include "cells/hierarchy.h"
@@ -49,8 +49,8 @@ public:
    void redo();
 
 signals:
-   void designChanged();          // content: draw again
-   void designReplaced();         // another document: look at it afresh
+   void designChanged();  // content: draw again
+   void designReplaced(); // another document: look at it afresh
    void materialChanged();
    void failed(const QString &message);
    void noted(const QString &message);

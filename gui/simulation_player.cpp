@@ -14,8 +14,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-constexpr double kFrameSeconds = 1.0 / 60;  // between frames, and the most simulated in one go
-constexpr double kSliceSeconds = 0.008;     // of wall time aimed at, so that pause and cancel act at once
+constexpr double kFrameSeconds = 1.0 / 60; // between frames, and the most simulated in one go
+constexpr double kSliceSeconds = 0.008;    // of wall time aimed at, so that pause and cancel act at once
 
 } // namespace
 
@@ -29,10 +29,10 @@ struct SimulationPlayer::Run
 
    std::mutex mutex;
    std::condition_variable wake;
-   bool playing = true;                      // guarded
+   bool playing = true;                         // guarded
    std::shared_ptr<const render::Moment> frame; // guarded
-   bool taken = true;                        // guarded: the frame was looked at since it was put
-   std::function<void()> announce;           // tells the window that there is a frame
+   bool taken = true;                           // guarded: the frame was looked at since it was put
+   std::function<void()> announce;              // tells the window that there is a frame
 
    std::shared_ptr<const std::vector<Index>> indices;
    std::vector<double> rest;
@@ -165,18 +165,24 @@ void SimulationPlayer::play(std::shared_ptr<const Catalogue> catalogue, const De
       m_run = run;
       ++m_number; // word of a run that was reset meanwhile is dropped
       run->announce = [this, number = m_number] {
-         QMetaObject::invokeMethod(this, [this, number] {
-            if (m_run && number == m_number)
-               emit frameReady();
-         }, Qt::QueuedConnection);
+         QMetaObject::invokeMethod(
+             this,
+             [this, number] {
+                if (m_run && number == m_number)
+                   emit frameReady();
+             },
+             Qt::QueuedConnection);
       };
       m_thread = QThread::create([this, run, number = m_number] {
          const Status status = run->work();
          if (!status && status.error().code != ErrorCode::cancelled)
-            QMetaObject::invokeMethod(this, [this, number, text = QString::fromStdString(status.error().message)] {
-               if (m_run && number == m_number)
-                  fail(text);
-            }, Qt::QueuedConnection);
+            QMetaObject::invokeMethod(
+                this,
+                [this, number, text = QString::fromStdString(status.error().message)] {
+                   if (m_run && number == m_number)
+                      fail(text);
+                },
+                Qt::QueuedConnection);
       });
       m_thread->start();
    }

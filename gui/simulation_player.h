@@ -1,5 +1,5 @@
-// Runs a simulation of a snapshot in a thread of its own, at the pace of real time or as fast as it can, and hands over
-// frames to draw. The document may be edited meanwhile; the run goes on with what it was given.
+// Runs a simulation of a snapshot in a thread of its own, at the pace of real time or as fast as it can, and
+// hands over frames to draw. The document may be edited meanwhile; the run goes on with what it was given.
 #pragma once
 
 #include "cells/hierarchy.h"

@@ -53,7 +53,8 @@ bool TaskRow::start(const QString &name, std::function<void(const Job &)> work, 
       if (value == shown)
          return;
       shown = value;
-      QMetaObject::invokeMethod(m_bar, [this, value] { m_bar->setValue(value); }, Qt::QueuedConnection);
+      QMetaObject::invokeMethod(
+          m_bar, [this, value] { m_bar->setValue(value); }, Qt::QueuedConnection);
    });
    m_thread = QThread::create([job = m_job, work = std::move(work)] { work(*job); });
    connect(m_thread, &QThread::finished, this, &TaskRow::finish);

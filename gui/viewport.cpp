@@ -19,7 +19,7 @@ constexpr double kArrowReach = 12;
 } // namespace
 
 Viewport::Viewport(Session *session, QWidget *parent)
-   : QOpenGLWidget(parent), m_session(session), m_builder(new Builder(session, this))
+    : QOpenGLWidget(parent), m_session(session), m_builder(new Builder(session, this))
 {
    setObjectName(QStringLiteral("viewport"));
    setAccessibleName(tr("3D view"));
@@ -81,8 +81,9 @@ void Viewport::paintGL()
    m_renderer->setOverlay(overlay);
    const double scale = devicePixelRatioF();
    const int samples = m_renderer->software() ? 0 : 4;
-   const Status status = m_renderer->draw(m_camera, {static_cast<int>(std::lround(width() * scale)),
-                                                     static_cast<int>(std::lround(height() * scale)), scale, samples});
+   const Status status =
+       m_renderer->draw(m_camera, {static_cast<int>(std::lround(width() * scale)),
+                                   static_cast<int>(std::lround(height() * scale)), scale, samples});
    if (status)
       m_renderer->copyTo(defaultFramebufferObject());
    else
@@ -186,7 +187,8 @@ std::optional<QPointF> Viewport::screenPosArrow() const
 double Viewport::sight() const
 {
    const render::Bounds reach = m_scene.reach();
-   const double around = reach.isEmpty() ? 0 : (reach.center() - m_camera.eye()).norm() + reach.diagonal().norm();
+   const double around =
+       reach.isEmpty() ? 0 : (reach.center() - m_camera.eye()).norm() + reach.diagonal().norm();
    return 2 * std::max(around, 10 * m_camera.distance());
 }
 
@@ -259,13 +261,22 @@ void Viewport::dragTo(const QPointF &at)
    const QPointF by = at - m_last;
    m_last = at;
    switch (m_drag) {
-   case Drag::orbit: m_camera.orbit(by.x(), by.y(), m_pivot); break;
-   case Drag::pan: m_camera.pan(by.x(), by.y()); break;
-   case Drag::region: m_builder->dragRegion(rayAt(at)); break;
-   case Drag::arrow: m_builder->dragPull(rayAt(at)); break;
+   case Drag::orbit:
+      m_camera.orbit(by.x(), by.y(), m_pivot);
+      break;
+   case Drag::pan:
+      m_camera.pan(by.x(), by.y());
+      break;
+   case Drag::region:
+      m_builder->dragRegion(rayAt(at));
+      break;
+   case Drag::arrow:
+      m_builder->dragPull(rayAt(at));
+      break;
    case Drag::none:
    case Drag::waiting:
-   case Drag::idle: return;
+   case Drag::idle:
+      return;
    }
    update();
 }
@@ -274,7 +285,7 @@ void Viewport::mouseMoveEvent(QMouseEvent *event)
 {
    const QPointF at = event->position();
    if (m_drag == Drag::none) {
-      hover(at, event->modifiers());
+      hover(at, event->modifiers() & ~Qt::AltModifier); // Alt may be held for the wheel
       return;
    }
    if (m_drag == Drag::waiting) {
@@ -300,7 +311,7 @@ void Viewport::mouseReleaseEvent(QMouseEvent *event)
    }
    hover(m_pressed, m_keys);
    m_builder->act();
-   hover(event->position(), event->modifiers());
+   hover(event->position(), event->modifiers() & ~Qt::AltModifier);
 }
 
 void Viewport::wheelEvent(QWheelEvent *event)
@@ -320,7 +331,8 @@ void Viewport::leaveEvent(QEvent *) { m_builder->leave(); }
 
 bool Viewport::event(QEvent *event)
 {
-   // Space held is for panning; its release without a drag plays. Enter and arrows act here only while a region is open.
+   // Space held is for panning; its release without a drag plays. Enter and arrows act here only while a
+   // region is open.
    if (event->type() == QEvent::ShortcutOverride && static_cast<QKeyEvent *>(event)->key() == Qt::Key_Space) {
       event->accept();
       return true;
@@ -337,9 +349,14 @@ void Viewport::keyPressEvent(QKeyEvent *event)
          m_spaceUsed = false;
       }
       break;
-   case Qt::Key_Up: m_builder->pull(1); break;
-   case Qt::Key_Down: m_builder->pull(-1); break;
-   default: QOpenGLWidget::keyPressEvent(event);
+   case Qt::Key_Up:
+      m_builder->pull(1);
+      break;
+   case Qt::Key_Down:
+      m_builder->pull(-1);
+      break;
+   default:
+      QOpenGLWidget::keyPressEvent(event);
    }
 }
 

@@ -17,9 +17,9 @@ constexpr double kRadiansPerPixel = 0.008;
 std::optional<ViewDirection> viewDirection(std::string_view name)
 {
    constexpr std::pair<std::string_view, ViewDirection> names[] = {
-      {"iso", ViewDirection::iso},     {"front", ViewDirection::front}, {"back", ViewDirection::back},
-      {"left", ViewDirection::left},   {"right", ViewDirection::right}, {"top", ViewDirection::top},
-      {"bottom", ViewDirection::bottom}};
+       {"iso", ViewDirection::iso},      {"front", ViewDirection::front}, {"back", ViewDirection::back},
+       {"left", ViewDirection::left},    {"right", ViewDirection::right}, {"top", ViewDirection::top},
+       {"bottom", ViewDirection::bottom}};
    for (const auto &[text, direction] : names)
       if (text == name)
          return direction;
@@ -35,13 +35,27 @@ void Camera::resize(double width, double height)
 void Camera::look(ViewDirection direction)
 {
    switch (direction) {
-   case ViewDirection::iso: m_yaw = 0.62, m_pitch = 0.52; break;
-   case ViewDirection::front: m_yaw = 0, m_pitch = 0; break;
-   case ViewDirection::back: m_yaw = kPi, m_pitch = 0; break;
-   case ViewDirection::left: m_yaw = -kPi / 2, m_pitch = 0; break;
-   case ViewDirection::right: m_yaw = kPi / 2, m_pitch = 0; break;
-   case ViewDirection::top: m_yaw = 0, m_pitch = kPi / 2; break;
-   case ViewDirection::bottom: m_yaw = 0, m_pitch = -kPi / 2; break;
+   case ViewDirection::iso:
+      m_yaw = 0.62, m_pitch = 0.52;
+      break;
+   case ViewDirection::front:
+      m_yaw = 0, m_pitch = 0;
+      break;
+   case ViewDirection::back:
+      m_yaw = kPi, m_pitch = 0;
+      break;
+   case ViewDirection::left:
+      m_yaw = -kPi / 2, m_pitch = 0;
+      break;
+   case ViewDirection::right:
+      m_yaw = kPi / 2, m_pitch = 0;
+      break;
+   case ViewDirection::top:
+      m_yaw = 0, m_pitch = kPi / 2;
+      break;
+   case ViewDirection::bottom:
+      m_yaw = 0, m_pitch = -kPi / 2;
+      break;
    }
 }
 
@@ -91,8 +105,7 @@ void Camera::zoom(double steps, const Point &at)
 {
    const double factor = std::pow(kZoomPerStep, steps);
    const double next = std::clamp(m_distance * factor, 1e-9, 1e6);
-   const Vec3 offset = metresPerPixel() *
-                       ((at.x() - m_width / 2) * right() - (at.y() - m_height / 2) * up());
+   const Vec3 offset = metresPerPixel() * ((at.x() - m_width / 2) * right() - (at.y() - m_height / 2) * up());
    m_target += offset * (1 - next / m_distance);
    m_distance = next;
 }

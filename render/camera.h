@@ -1,5 +1,5 @@
-// The eye: a turntable about a target with Z up, in perspective or orthographic projection. Lengths in metres, screen
-// positions in logical pixels from the top left.
+// The eye: a turntable about a target with Z up, in perspective or orthographic projection. Lengths in
+// metres, screen positions in logical pixels from the top left.
 #pragma once
 
 #include "core/vec.h"

@@ -18,7 +18,8 @@ std::uint64_t brickKey(Index i, int shift)
 {
    const auto part = [shift](std::int32_t v) { return std::uint64_t(std::uint32_t(v) >> shift); };
    // 2^32 >> shift needs 28 bits or fewer per axis: mixed, as 84 bits do not fit.
-   return (part(i.x) * 0x9e3779b97f4a7c15u) ^ (part(i.y) * 0xc2b2ae3d27d4eb4fu) ^ (part(i.z) * 0x165667b19e3779f9u);
+   return (part(i.x) * 0x9e3779b97f4a7c15u) ^ (part(i.y) * 0xc2b2ae3d27d4eb4fu) ^
+          (part(i.z) * 0x165667b19e3779f9u);
 }
 
 /// Which cells are there: bits in bricks of 16^3, for millions of look-ups close to each other.
@@ -107,25 +108,27 @@ std::vector<std::uint64_t> exposedFaces(const Lattice &lattice, const std::vecto
          across[static_cast<std::size_t>(site)].push_back(link ? Across{true, link->offset} : Across{});
       }
    std::vector<std::uint64_t> masks(cells.size());
-   job.parallelFor(static_cast<std::int64_t>(cells.size()), 1 << 15, [&](std::int64_t begin, std::int64_t end) {
-      // One reader per direction, as each walks through bricks of its own.
-      std::vector<Occupancy::Reader> readers(64, Occupancy::Reader(occupancy));
-      for (std::int64_t c = begin; c < end; ++c) {
-         const Index index = cells[static_cast<std::size_t>(c)].index;
-         const auto &faces = across[static_cast<std::size_t>(lattice.site(index))];
-         std::uint64_t mask = 0;
-         for (std::size_t f = 0; f < faces.size() && f < 64; ++f)
-            if (!faces[f].any || !readers[f].has(index + faces[f].offset))
-               mask |= std::uint64_t{1} << f;
-         masks[static_cast<std::size_t>(c)] = mask;
-      }
-   });
+   job.parallelFor(static_cast<std::int64_t>(cells.size()), 1 << 15,
+                   [&](std::int64_t begin, std::int64_t end) {
+                      // One reader per direction, as each walks through bricks of its own.
+                      std::vector<Occupancy::Reader> readers(64, Occupancy::Reader(occupancy));
+                      for (std::int64_t c = begin; c < end; ++c) {
+                         const Index index = cells[static_cast<std::size_t>(c)].index;
+                         const auto &faces = across[static_cast<std::size_t>(lattice.site(index))];
+                         std::uint64_t mask = 0;
+                         for (std::size_t f = 0; f < faces.size() && f < 64; ++f)
+                            if (!faces[f].any || !readers[f].has(index + faces[f].offset))
+                               mask |= std::uint64_t{1} << f;
+                         masks[static_cast<std::size_t>(c)] = mask;
+                      }
+                   });
    return masks;
 }
 
 /// Gives every cell with an exposed face a slot and a chunk.
 std::vector<std::uint32_t> fillSlots(CellMesh &mesh, const Lattice &lattice, const std::vector<Listed> &cells,
-                                     const std::vector<std::uint64_t> &masks, std::vector<std::uint64_t> &slotMask)
+                                     const std::vector<std::uint64_t> &masks,
+                                     std::vector<std::uint64_t> &slotMask)
 {
    std::vector<std::uint32_t> chunkOf;
    std::unordered_map<std::uint64_t, std::uint32_t> chunks; // a shared key only makes a chunk larger
@@ -135,8 +138,8 @@ std::vector<std::uint32_t> fillSlots(CellMesh &mesh, const Lattice &lattice, con
          continue;
       const Vec3 world = lattice.position(cells[c].index);
       const Eigen::Vector3f at = (world - mesh.anchor).cast<float>();
-      const auto [chunk, fresh] =
-         chunks.try_emplace(brickKey(cells[c].index, kChunkShift), static_cast<std::uint32_t>(mesh.chunks.size()));
+      const auto [chunk, fresh] = chunks.try_emplace(brickKey(cells[c].index, kChunkShift),
+                                                     static_cast<std::uint32_t>(mesh.chunks.size()));
       if (fresh)
          mesh.chunks.emplace_back();
       mesh.chunks[chunk->second].extend(at - Eigen::Vector3f::Constant(radius));
@@ -160,8 +163,8 @@ void sortFaces(CellMesh &mesh, const Lattice &lattice, const std::vector<std::ui
    mesh.start.assign(mesh.types.types.size() * chunks + 1, 0);
    const auto eachFace = [&](auto &&act) {
       for (std::size_t slot = 0; slot < slotMask.size(); ++slot) {
-         const auto first =
-            static_cast<std::size_t>(mesh.types.start[static_cast<std::size_t>(lattice.site(mesh.cells[slot]))]);
+         const auto first = static_cast<std::size_t>(
+             mesh.types.start[static_cast<std::size_t>(lattice.site(mesh.cells[slot]))]);
          for (std::uint64_t mask = slotMask[slot]; mask; mask &= mask - 1)
             act(slot, (first + static_cast<std::size_t>(std::countr_zero(mask))) * chunks + chunkOf[slot]);
       }
@@ -171,7 +174,9 @@ void sortFaces(CellMesh &mesh, const Lattice &lattice, const std::vector<std::ui
       mesh.start[run] += mesh.start[run - 1];
    mesh.faces.resize(mesh.start.back());
    std::vector<std::uint32_t> next(mesh.start.begin(), mesh.start.end() - 1);
-   eachFace([&](std::size_t slot, std::size_t run) { mesh.faces[next[run]++] = static_cast<std::uint32_t>(slot); });
+   eachFace([&](std::size_t slot, std::size_t run) {
+      mesh.faces[next[run]++] = static_cast<std::uint32_t>(slot);
+   });
 }
 
 } // namespace
@@ -189,7 +194,8 @@ Bounds worldBounds(const Lattice &lattice, const Box &box)
          const auto pick = [](bool high, std::int32_t low, std::int32_t top, std::int32_t step) {
             return high ? std::max(low, top - step) : std::min(top, low + step);
          };
-         const Index at{pick(corner & 1, box.min.x, box.max.x, shift.x), pick(corner & 2, box.min.y, box.max.y, shift.y),
+         const Index at{pick(corner & 1, box.min.x, box.max.x, shift.x),
+                        pick(corner & 2, box.min.y, box.max.y, shift.y),
                         pick(corner & 4, box.min.z, box.max.z, shift.z)};
          bounds.extend(lattice.position(at));
       }
@@ -201,10 +207,11 @@ Result<CellMesh> buildCellMesh(const Hierarchy &hierarchy, const Job &job, std::
 {
    const Lattice &lattice = hierarchy.lattice();
    if (hierarchy.cells() > limit)
-      return Error{ErrorCode::unsupported,
-                   fmt::format("The assembly has {} cells, more than the {} that can be drawn one by one; use the "
-                               "hierarchy view.",
-                               hierarchy.cells(), limit)};
+      return Error{
+          ErrorCode::unsupported,
+          fmt::format("The assembly has {} cells, more than the {} that can be drawn one by one; use the "
+                      "hierarchy view.",
+                      hierarchy.cells(), limit)};
    CellMesh mesh;
    mesh.types = faceTypes(lattice);
    const Box box = hierarchy.bounds();

@@ -10,8 +10,7 @@ namespace {
 bool inView(const Eigen::AlignedBox3f &box, const Eigen::Matrix4f &transform)
 {
    for (int plane = 0; plane < 6; ++plane) {
-      const Eigen::RowVector4f p =
-         transform.row(3) + (plane & 1 ? 1.0f : -1.0f) * transform.row(plane / 2);
+      const Eigen::RowVector4f p = transform.row(3) + (plane & 1 ? 1.0f : -1.0f) * transform.row(plane / 2);
       const Eigen::Vector3f far = (p.head<3>().transpose().array() > 0).select(box.max(), box.min());
       if (p.head<3>().dot(far) + p[3] < 0)
          return false;
@@ -37,7 +36,8 @@ void CellPass::setCells(const CellMesh &mesh)
    m_types.clear();
    std::vector<float> corners;
    for (const FaceType &type : mesh.types.types) {
-      m_types.push_back({type.normal, static_cast<GLint>(corners.size() / 7), static_cast<GLsizei>(type.fan.size())});
+      m_types.push_back(
+          {type.normal, static_cast<GLint>(corners.size() / 7), static_cast<GLsizei>(type.fan.size())});
       for (const auto &corner : type.fan) {
          corners.insert(corners.end(), corner.position.data(), corner.position.data() + 3);
          corners.insert(corners.end(), corner.edge.data(), corner.edge.data() + 4);
@@ -96,7 +96,8 @@ void CellPass::draw(const Camera &camera, const Eigen::Matrix4f &transform, floa
    glBindVertexArray(0);
 }
 
-void CellPass::drawRuns(const Type &type, std::size_t number, const std::vector<bool> &inView, const Camera &camera)
+void CellPass::drawRuns(const Type &type, std::size_t number, const std::vector<bool> &inView,
+                        const Camera &camera)
 {
    const Eigen::Vector3f back = camera.backward().cast<float>();
    const Eigen::Vector3f eye = (camera.eye() - m_anchor).cast<float>();

@@ -1,5 +1,5 @@
-// Draws the exposed faces of cells: one instance per face, one run per face type and chunk, runs out of view or turned
-// away left out. For the .cpp files of render/ only.
+// Draws the exposed faces of cells: one instance per face, one run per face type and chunk, runs out of view
+// or turned away left out. For the .cpp files of render/ only.
 #pragma once
 
 #include "render/camera.h"

@@ -34,8 +34,8 @@ Rgba fieldColor(double fraction)
    if (!std::isfinite(fraction))
       return {128, 128, 128, 255};
    const double t = std::clamp(fraction, 0.0, 1.0);
-   // Straight in lightness; hue turns from blue-violet (290 degrees) through teal and green to yellow (105); chroma is
-   // what sRGB can show along that path.
+   // Straight in lightness; hue turns from blue-violet (290 degrees) through teal and green to yellow (105);
+   // chroma is what sRGB can show along that path.
    const double lightness = 0.30 + 0.62 * t;
    const double hue = (290 - 185 * t) * 3.14159265358979323846 / 180;
    const double chroma = 0.10 + 0.07 * t - 0.04 * std::sin(3.14159265358979323846 * t);

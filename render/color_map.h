@@ -1,5 +1,5 @@
-// A perceptual colour map for fields: lightness rises evenly from deep blue through green to yellow, so that the order
-// of values survives grey printing and colour blindness. Also the round numbers a legend shows.
+// A perceptual colour map for fields: lightness rises evenly from deep blue through green to yellow, so that
+// the order of values survives grey printing and colour blindness. Also the round numbers a legend shows.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// Composites as boxes, for the hierarchy view and for assemblies too large to draw cell by cell. Sizes come from the
-// definitions, each looked at once; nothing is expanded.
+// Composites as boxes, for the hierarchy view and for assemblies too large to draw cell by cell. Sizes come
+// from the definitions, each looked at once; nothing is expanded.
 #pragma once
 
 #include "cells/hierarchy.h"

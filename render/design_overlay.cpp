@@ -59,7 +59,8 @@ std::vector<Line> baseGrid(const Lattice &lattice, const Box &content, Rgba colo
    const double height = basePlaneHeight(lattice);
    std::vector<Line> lines;
    const Vec3 middle = (lattice.position({x0, y0, 0}) + lattice.position({x1, y1, 0})) / 2;
-   const double reach = (lattice.position({x1, y1, 0}) - lattice.position({x0, y0, 0})).norm() / 2 + lattice.radius();
+   const double reach =
+       (lattice.position({x1, y1, 0}) - lattice.position({x0, y0, 0})).norm() / 2 + lattice.radius();
    for (std::int32_t x = x0; x <= x1; ++x)
       for (std::int32_t y = y0; y <= y1; ++y) {
          const Index i{x, y, 0};
@@ -105,7 +106,7 @@ void addPort(Overlay &overlay, const Lattice &lattice, const Port &port, Rgba co
       const double arm = 0.2 * lattice.radius();
       for (int axis = 0; axis < 3; ++axis)
          overlay.lines.push_back(
-            {outline[0] - arm * Vec3::Unit(axis), outline[0] + arm * Vec3::Unit(axis), color, 3});
+             {outline[0] - arm * Vec3::Unit(axis), outline[0] + arm * Vec3::Unit(axis), color, 3});
       return;
    }
    if (outline.size() == 2) {
@@ -156,7 +157,8 @@ void addTriad(Overlay &overlay, const Camera &camera)
    });
    for (const Axis &axis : axes) {
       const auto onScreen = [&](double length) {
-         return Vec3(origin + length * Vec3(axis.direction.dot(camera.right()), -axis.direction.dot(camera.up()), 0));
+         return Vec3(origin +
+                     length * Vec3(axis.direction.dot(camera.right()), -axis.direction.dot(camera.up()), 0));
       };
       overlay.screenLines.push_back({origin, onScreen(size), axis.color, 2.5f});
       const Vec3 label = onScreen(size + 11);
@@ -171,20 +173,20 @@ void addLegend(Overlay &overlay, const Camera &camera, const Legend &legend, Rgb
    constexpr int steps = 64;
    for (int i = 0; i < steps; ++i) {
       const double y0 = top + height * i / steps, y1 = top + height * (i + 1) / steps;
-      overlay.screenFill.push_back({{Vec3(right, y0, 0), Vec3(right, y1, 0), Vec3(right + width, y1, 0),
-                                     Vec3(right + width, y0, 0)},
-                                    fieldColor(1 - (i + 0.5) / steps)});
+      overlay.screenFill.push_back(
+          {{Vec3(right, y0, 0), Vec3(right, y1, 0), Vec3(right + width, y1, 0), Vec3(right + width, y0, 0)},
+           fieldColor(1 - (i + 0.5) / steps)});
    }
-   const std::vector<Vec3> frame{{right, top, 0}, {right, top + height, 0}, {right + width, top + height, 0},
-                                 {right + width, top, 0}};
+   const std::vector<Vec3> frame{
+       {right, top, 0}, {right, top + height, 0}, {right + width, top + height, 0}, {right + width, top, 0}};
    addLoop(overlay.screenLines, frame, ink, 1);
    for (std::size_t i = 0; i < legend.ticks.size(); ++i) {
       const double y = top + height * (legend.high > 0 ? 1 - legend.ticks[i] / legend.high : 1);
       overlay.screenLines.push_back({Vec3(right + width, y, 0), Vec3(right + width + 5, y, 0), ink, 1});
       addText(overlay.screenLines, legend.texts[i], {right + width + 9, y - size / 2}, size, ink, 1.3f);
    }
-   addText(overlay.screenLines, legend.title,
-           {camera.width() - 16 - textWidth(legend.title, size), top - 26}, size, ink, 1.3f);
+   addText(overlay.screenLines, legend.title, {camera.width() - 16 - textWidth(legend.title, size), top - 26},
+           size, ink, 1.3f);
 }
 
 } // namespace diatom::render

@@ -1,5 +1,5 @@
-// What is drawn over a design: the lattice's own tiling on the base plane, the ghost of a cell, the outline of a port, a
-// region, the axis triad and, for pictures without widgets, the legend.
+// What is drawn over a design: the lattice's own tiling on the base plane, the ghost of a cell, the outline
+// of a port, a region, the axis triad and, for pictures without widgets, the legend.
 #pragma once
 
 #include "lattice/lattice.h"

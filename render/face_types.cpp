@@ -7,9 +7,10 @@ namespace diatom::render {
 
 namespace {
 
-/// One coordinate per pair of parallel edges (1 on one, -1 on the other) or per single edge (1 on it, 0 at the farthest
-/// corner). Nothing when the polygon needs more than four.
-std::optional<std::vector<Eigen::Vector4f>> edgeCoordinates(const std::vector<Vec3> &polygon, const Vec3 &normal)
+/// One coordinate per pair of parallel edges (1 on one, -1 on the other) or per single edge (1 on it, 0 at
+/// the farthest corner). Nothing when the polygon needs more than four.
+std::optional<std::vector<Eigen::Vector4f>> edgeCoordinates(const std::vector<Vec3> &polygon,
+                                                            const Vec3 &normal)
 {
    const std::size_t n = polygon.size();
    std::vector<Eigen::Vector4f> result(n, Eigen::Vector4f::Zero());
@@ -20,7 +21,9 @@ std::optional<std::vector<Eigen::Vector4f>> edgeCoordinates(const std::vector<Ve
          continue;
       if (used == 4)
          return std::nullopt;
-      const auto direction = [&](std::size_t e) -> Vec3 { return (polygon[(e + 1) % n] - polygon[e]).normalized(); };
+      const auto direction = [&](std::size_t e) -> Vec3 {
+         return (polygon[(e + 1) % n] - polygon[e]).normalized();
+      };
       const Vec3 inward = normal.cross(direction(i));
       double width = 0;
       for (const Vec3 &corner : polygon)
@@ -52,7 +55,8 @@ FaceType makeType(const std::vector<Vec3> &polygon, int site, int face)
          type.fan.push_back({polygon[i].cast<float>(), (*edges)[i]});
       return type;
    }
-   // Many directions (a heptagon, say): a fan about the middle, where the distance to the rim is one coordinate.
+   // Many directions (a heptagon, say): a fan about the middle, where the distance to the rim is one
+   // coordinate.
    Vec3 middle = Vec3::Zero();
    for (const Vec3 &corner : polygon)
       middle += corner / double(polygon.size());

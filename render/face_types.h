@@ -1,4 +1,5 @@
-// The few polygons a lattice is drawn from: one per site and face, with what the shader needs to draw its edges.
+// The few polygons a lattice is drawn from: one per site and face, with what the shader needs to draw its
+// edges.
 #pragma once
 
 #include "lattice/lattice.h"
@@ -9,7 +10,8 @@
 
 namespace diatom::render {
 
-/// A face of the cells of one site, drawn as a triangle fan. Positions are relative to the cell's centre, world axes, m.
+/// A face of the cells of one site, drawn as a triangle fan. Positions are relative to the cell's centre,
+/// world axes, m.
 struct FaceType
 {
    struct Corner

@@ -44,8 +44,9 @@ Status Program::build(const char *defines, const char *vertex, const char *fragm
    GLint linked = 0;
    glGetProgramiv(m_name, GL_LINK_STATUS, &linked);
    if (status && !linked)
-      return Error{ErrorCode::unsupported, "The graphics driver cannot link a shader program; update the driver, or set "
-                                           "LIBGL_ALWAYS_SOFTWARE=1 to draw without it."};
+      return Error{ErrorCode::unsupported,
+                   "The graphics driver cannot link a shader program; update the driver, or set "
+                   "LIBGL_ALWAYS_SOFTWARE=1 to draw without it."};
    return status;
 }
 
@@ -69,9 +70,10 @@ Result<bool> Target::ensure(int width, int height, int samples)
    }
    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
       release();
-      return Error{ErrorCode::unsupported,
-                   fmt::format("The graphics driver cannot make a picture of {}x{} pixels; ask for a smaller one.", width,
-                               height)};
+      return Error{
+          ErrorCode::unsupported,
+          fmt::format("The graphics driver cannot make a picture of {}x{} pixels; ask for a smaller one.",
+                      width, height)};
    }
    return true;
 }

@@ -1,4 +1,5 @@
-// OpenGL objects that free themselves, and shader programs with errors as values. For the .cpp files of render/ only.
+// OpenGL objects that free themselves, and shader programs with errors as values. For the .cpp files of
+// render/ only.
 #pragma once
 
 #include "core/result.h"
@@ -94,7 +95,10 @@ public:
    {
       glUniformMatrix4fv(place(uniform), 1, GL_FALSE, m.data());
    }
-   void set(const char *uniform, const Eigen::Vector3f &v) const { glUniform3fv(place(uniform), 1, v.data()); }
+   void set(const char *uniform, const Eigen::Vector3f &v) const
+   {
+      glUniform3fv(place(uniform), 1, v.data());
+   }
    void set(const char *uniform, float x, float y) const { glUniform2f(place(uniform), x, y); }
    void set(const char *uniform, float x) const { glUniform1f(place(uniform), x); }
    void set(const char *uniform, int x) const { glUniform1i(place(uniform), x); }

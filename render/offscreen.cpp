@@ -27,8 +27,10 @@ namespace {
 
 Error noContext(const char *what)
 {
-   return {ErrorCode::unsupported,
-           fmt::format("Cannot draw without a display: {}; install Mesa's EGL (Debian: libegl1 libgl1-mesa-dri).", what)};
+   return {
+       ErrorCode::unsupported,
+       fmt::format("Cannot draw without a display: {}; install Mesa's EGL (Debian: libegl1 libgl1-mesa-dri).",
+                   what)};
 }
 
 } // namespace
@@ -43,15 +45,22 @@ Result<std::unique_ptr<Offscreen>> Offscreen::make()
    if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless"))
       return noContext("EGL has no surfaceless platform");
    c.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
-   if (c.display == EGL_NO_DISPLAY || !eglInitialize(c.display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
+   if (c.display == EGL_NO_DISPLAY || !eglInitialize(c.display, nullptr, nullptr) ||
+       !eglBindAPI(EGL_OPENGL_API))
       return noContext("EGL does not start");
-   const EGLint configWish[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+   const EGLint configWish[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                EGL_NONE};
    EGLConfig config = nullptr;
    EGLint configs = 0;
    if (!eglChooseConfig(c.display, configWish, &config, 1, &configs) || configs < 1)
       return noContext("EGL offers no configuration for OpenGL");
-   const EGLint contextWish[] = {EGL_CONTEXT_MAJOR_VERSION,       3, EGL_CONTEXT_MINOR_VERSION, 3,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+   const EGLint contextWish[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 3,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 3,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_NONE};
    c.context = eglCreateContext(c.display, config, EGL_NO_CONTEXT, contextWish);
    if (c.context == EGL_NO_CONTEXT || !eglMakeCurrent(c.display, EGL_NO_SURFACE, EGL_NO_SURFACE, c.context))
       return noContext("the driver has no OpenGL 3.3");
@@ -67,8 +76,8 @@ Result<Image> Offscreen::picture(const Camera &camera, int width, int height)
    glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &largest);
    if (width < 1 || height < 1 || width > largest || height > largest)
       return Error{ErrorCode::usage,
-                   fmt::format("A picture of {}x{} pixels cannot be drawn here; use 1 to {} each way.", width, height,
-                               largest)};
+                   fmt::format("A picture of {}x{} pixels cannot be drawn here; use 1 to {} each way.", width,
+                               height, largest)};
    const int factor = 2 * std::max(width, height) <= largest ? 2 : 1;
    Camera sized = camera;
    sized.resize(width, height);
@@ -105,7 +114,8 @@ Result<std::string> encodePng(const Image &image)
          return bytes;
       }
    }
-   return Error{ErrorCode::internal, fmt::format("The picture cannot be written as PNG: {}.", header.message)};
+   return Error{ErrorCode::internal,
+                fmt::format("The picture cannot be written as PNG: {}.", header.message)};
 }
 
 } // namespace diatom::render

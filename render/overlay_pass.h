@@ -26,7 +26,8 @@ public:
    void setPolygons(Batch &batch, std::span<const Polygon> polygons, const Vec3 &anchor);
    void setBoxes(Batch &batch, std::span<const SolidBox> boxes, const Vec3 &anchor);
 
-   void drawLines(const Batch &batch, const Eigen::Matrix4f &transform, float width, float height, float opacity);
+   void drawLines(const Batch &batch, const Eigen::Matrix4f &transform, float width, float height,
+                  float opacity);
    void drawPolygons(const Batch &batch, const Eigen::Matrix4f &transform, float opacity);
    void drawBoxes(const Batch &batch, const Eigen::Matrix4f &transform, float lineWidth);
    /// Line widths and screen positions are logical pixels; this many device pixels each.

@@ -39,12 +39,15 @@ double distanceOnFace(const Lattice &lattice, Index cell, int face, const Link &
    const int site = lattice.site(cell);
    const Shape &shape = lattice.shape(site);
    const auto &around = shape.faces[static_cast<std::size_t>(face)];
-   const auto onFace = [&](int vertex) { return std::find(around.begin(), around.end(), vertex) != around.end(); };
+   const auto onFace = [&](int vertex) {
+      return std::find(around.begin(), around.end(), vertex) != around.end();
+   };
    const auto corner = [&](int vertex) -> Vec3 {
       return lattice.position(cell) + lattice.corners(site)[static_cast<std::size_t>(vertex)];
    };
    if (link.contact == Contact::vertex)
-      return onFace(link.feature) ? (point - corner(link.feature)).norm() : std::numeric_limits<double>::infinity();
+      return onFace(link.feature) ? (point - corner(link.feature)).norm()
+                                  : std::numeric_limits<double>::infinity();
    const auto &[a, b] = shape.edges[static_cast<std::size_t>(link.feature)];
    if (!onFace(a) || !onFace(b))
       return std::numeric_limits<double>::infinity();
@@ -159,12 +162,14 @@ std::vector<Vec3> portOutline(const Lattice &lattice, const Port &port)
       return faceCorners(lattice, port.cell, static_cast<int>(lowest));
    }
    switch (port.contact) {
-   case Contact::face: return faceCorners(lattice, port.cell, port.feature);
+   case Contact::face:
+      return faceCorners(lattice, port.cell, port.feature);
    case Contact::edge: {
       const auto &edge = lattice.shape(site).edges[static_cast<std::size_t>(port.feature)];
       return {corner(edge[0]), corner(edge[1])};
    }
-   case Contact::vertex: break;
+   case Contact::vertex:
+      break;
    }
    return {corner(port.feature)};
 }
@@ -192,7 +197,8 @@ Index cellOfLayer(const Lattice &lattice, const Vec3 &point, std::int32_t layer)
    steps << stepX.head<2>(), stepY.head<2>();
    const Eigen::Vector2d guess = steps.inverse() * (point - zero).head<2>();
    const auto whole = [](double v) {
-      return static_cast<std::int32_t>(std::lround(std::clamp(v, -double(kIndexLimit) + 16, double(kIndexLimit) - 16)));
+      return static_cast<std::int32_t>(
+          std::lround(std::clamp(v, -double(kIndexLimit) + 16, double(kIndexLimit) - 16)));
    };
    const Index middle{whole(guess.x()), whole(guess.y()), layer};
    // Offsets of the sites move the nearest one by a period at most.

@@ -1,5 +1,6 @@
-// Which port of which cell lies under the pointer, and which cell a click would put there. A port is where a neighbour
-// attaches: a face, an edge or a vertex, as the lattice says; nothing here knows any particular lattice.
+// Which port of which cell lies under the pointer, and which cell a click would put there. A port is where a
+// neighbour attaches: a face, an edge or a vertex, as the lattice says; nothing here knows any particular
+// lattice.
 #pragma once
 
 #include "cells/hierarchy.h"
@@ -13,12 +14,12 @@ namespace diatom::render {
 
 struct Port
 {
-   Index cell;                      // that has the port; for the base plane the cell that would be placed
+   Index cell; // that has the port; for the base plane the cell that would be placed
    Contact contact = Contact::face;
-   int feature = 0;                 // face, edge or vertex number of the cell's shape
-   std::optional<Index> neighbour;  // where it leads; nothing when no cell of the lattice meets it
-   bool occupied = false;           // a cell is there already
-   bool base = false;               // of the base plane, a virtual layer under the cells with z index 0
+   int feature = 0;                // face, edge or vertex number of the cell's shape
+   std::optional<Index> neighbour; // where it leads; nothing when no cell of the lattice meets it
+   bool occupied = false;          // a cell is there already
+   bool base = false;              // of the base plane, a virtual layer under the cells with z index 0
 
    /// "(4,2,7) face 9", "(0,0,0) base plane".
    std::string text() const;

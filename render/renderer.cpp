@@ -208,9 +208,11 @@ Status Renderer::draw(const Camera &camera, const Picture &picture)
    const auto copy = [&](GLuint from, GLuint to, GLbitfield what) {
       glBindFramebuffer(GL_READ_FRAMEBUFFER, from);
       glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
-      glBlitFramebuffer(0, 0, picture.width, picture.height, 0, 0, picture.width, picture.height, what, GL_NEAREST);
+      glBlitFramebuffer(0, 0, picture.width, picture.height, 0, 0, picture.width, picture.height, what,
+                        GL_NEAREST);
    };
-   copy(self.scene.name(), self.whole.name(), GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+   copy(self.scene.name(), self.whole.name(),
+        GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
    glBindFramebuffer(GL_FRAMEBUFFER, self.whole.name());
    self.drawOverlay(transform);
    copy(self.whole.name(), self.flat.name(), GL_COLOR_BUFFER_BIT);

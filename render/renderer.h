@@ -1,5 +1,5 @@
-// Draws a scene with OpenGL 3.3 into whatever context is current: a window's or one without any display. The scene is
-// kept as a picture with depth, so that moving a ghost or a selection never draws the cells again.
+// Draws a scene with OpenGL 3.3 into whatever context is current: a window's or one without any display. The
+// scene is kept as a picture with depth, so that moving a ghost or a selection never draws the cells again.
 #pragma once
 
 #include "core/result.h"
@@ -35,7 +35,8 @@ public:
    /// Faces at rest; colours are grey until setColors().
    void setCells(const CellMesh &mesh);
    void setColors(std::span<const Rgba> bySlot);
-   /// Poses of a running simulation by slot: x y z 0 about the mesh's anchor, and turns since rest w x y z. Empty: rest.
+   /// Poses of a running simulation by slot: x y z 0 about the mesh's anchor, and turns since rest w x y z.
+   /// Empty: rest.
    void setPoses(std::span<const float> position, std::span<const float> turn);
    void setBoxes(std::span<const SolidBox> boxes);
    void setGrid(std::span<const Line> lines);

@@ -91,7 +91,8 @@ void SceneView::poses(Renderer &renderer)
          continue;
       const auto c = static_cast<std::size_t>(cell);
       for (std::size_t i = 0; i < 3; ++i)
-         position[4 * slot + i] = static_cast<float>(m_frame->frame.position[3 * c + i] - m_mesh.anchor[long(i)]);
+         position[4 * slot + i] =
+             static_cast<float>(m_frame->frame.position[3 * c + i] - m_mesh.anchor[long(i)]);
       for (std::size_t i = 0; i < 4; ++i)
          turn[4 * slot + i] = static_cast<float>(m_frame->frame.rotation[4 * c + i]);
    }

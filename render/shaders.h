@@ -1,10 +1,12 @@
-// The shader programs. Light is constant over a face, so that it is worked out per corner; lines between cells come from
-// edge coordinates (render/face_types.h) in screen pixels. For the .cpp files of render/ only.
+// The shader programs. Light is constant over a face, so that it is worked out per corner; lines between
+// cells come from edge coordinates (render/face_types.h) in screen pixels. For the .cpp files of render/
+// only.
 #pragma once
 
 namespace diatom::render {
 
-/// shared by vertex shaders: two lights and a brighter sky; see also shade() in renderer.cpp, its twin on the CPU.
+/// shared by vertex shaders: two lights and a brighter sky; see also shade() in renderer.cpp, its twin on the
+/// CPU.
 #define DIATOM_SHADE                                                                                         \
    "float shade(vec3 n) {\n"                                                                                 \
    "   return 0.50 + 0.13 * n.z + 0.40 * max(dot(n, vec3(0.331, -0.662, 0.672)), 0.0)\n"                     \

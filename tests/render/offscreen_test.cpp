@@ -1,6 +1,6 @@
 // Pictures drawn without a display.
-#include "render/offscreen.h"
 #include "render/design_overlay.h"
+#include "render/offscreen.h"
 #include "render/scene_view.h"
 #include "scenes.h"
 
@@ -153,7 +153,8 @@ private slots:
       const auto png = encodePng(image);
       DIATOM_VERIFY_OK(png);
       QVERIFY(png->substr(1, 3) == "PNG");
-      QCOMPARE(int(std::uint8_t((*png)[19])), 3); // width and height in the header chunk (PNG specification 11.2.2)
+      QCOMPARE(int(std::uint8_t((*png)[19])),
+               3); // width and height in the header chunk (PNG specification 11.2.2)
       QCOMPARE(int(std::uint8_t((*png)[23])), 2);
    }
 

@@ -31,8 +31,10 @@ inline Model emptyModel(const std::string &lattice)
 {
    Model model;
    model.lattice.id = lattice;
-   for (const auto &[id, color] : {std::pair<const char *, std::array<std::uint8_t, 3>>{"blue", {60, 120, 190}},
-                                   std::pair<const char *, std::array<std::uint8_t, 3>>{"sand", {220, 170, 90}}}) {
+   for (const auto &[id, color] :
+        {std::pair<const char *, std::array<std::uint8_t, 3>>{"blue", {60, 120, 190}},
+         std::pair<const char *, std::array<std::uint8_t, 3>>{"sand", {220, 170, 90}}})
+   {
       Material material;
       material.id = material.name = id;
       material.color = color;
