@@ -8,7 +8,7 @@ using namespace diatom::cli;
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    addInfo,    addCheck,   addConvert, addDo,       addExport, addPlan,     addSimulate,
+    addInfo,    addCheck,   addConvert, addDo,       addExport, addPlan,     addRender,  addSimulate,
     addEffects, addCircuit, addPlugins, addLattices, addParts,  addMachines, addSolvers,
 };
 
