@@ -24,16 +24,16 @@ struct Options
 
 Result<std::pair<int, int>> parseSize(const std::string &text)
 {
-   const auto cross = text.find('x');
-   const auto width = parseInteger(std::string_view(text).substr(0, cross));
-   const auto height =
-       cross == std::string::npos ? std::nullopt : parseInteger(std::string_view(text).substr(cross + 1));
-   if (!width || !height || *width < 16 || *height < 16 || *width > 16384 || *height > 16384)
+   const std::size_t cross = text.find('x');
+   const std::string_view all = text;
+   const auto width = parseInteger(all.substr(0, cross)).value_or(0);
+   const auto height = cross == std::string::npos ? 0 : parseInteger(all.substr(cross + 1)).value_or(0);
+   if (width < 16 || height < 16 || width > 16384 || height > 16384)
       return Error{
           ErrorCode::usage,
           fmt::format("--size: \"{}\" is not WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800",
                       text)};
-   return std::pair{int(*width), int(*height)};
+   return std::pair{int(width), int(height)};
 }
 
 /// Runs the simulation to the asked moment.
