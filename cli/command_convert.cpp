@@ -23,8 +23,9 @@ void convert(Context &context, const ConvertOptions &options)
 {
    const auto suffix = std::filesystem::path(options.out).extension().string();
    if (options.out != "-" && suffix != ".diatom") {
-      context.fail({ErrorCode::usage, fmt::format("{}: only .diatom documents can be written; for meshes use `diatom export`",
-                                                  options.out)});
+      context.fail({ErrorCode::usage,
+                    fmt::format("{}: only .diatom documents can be written; for meshes use `diatom export`",
+                                options.out)});
       return;
    }
    auto opened = openDesign(options.in, context.job());
@@ -51,8 +52,12 @@ void addConvert(CLI::App &app, Context &context)
 {
    auto *command = app.add_subcommand("convert", "Turn any readable file into a .diatom document");
    const auto options = std::make_shared<ConvertOptions>();
-   command->add_option("IN", options->in, "a .diatom document or a file of AMOEBA or DMDesign; - reads standard input")->required();
-   command->add_option("OUT", options->out, "the .diatom document to write; - writes to standard output")->required();
+   command
+       ->add_option("IN", options->in,
+                    "a .diatom document or a file of AMOEBA or DMDesign; - reads standard input")
+       ->required();
+   command->add_option("OUT", options->out, "the .diatom document to write; - writes to standard output")
+       ->required();
    command->add_flag("--packed", options->packed, "write the packed form even when small");
    command->callback([&context, options] { convert(context, *options); });
 }

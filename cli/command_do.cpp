@@ -42,14 +42,16 @@ nlohmann::json numberList(std::string_view text)
 nlohmann::json argumentValue(const std::string &text)
 {
    if (const auto colon = text.find(':'); colon != std::string::npos) {
-      auto low = numberList(std::string_view(text).substr(0, colon)), high = numberList(std::string_view(text).substr(colon + 1));
+      auto low = numberList(std::string_view(text).substr(0, colon)),
+           high = numberList(std::string_view(text).substr(colon + 1));
       if (!low.is_null() && !high.is_null())
          return nlohmann::json::array({std::move(low), std::move(high)});
    }
    if (text.find(',') != std::string::npos)
       if (auto list = numberList(text); !list.is_null())
          return list;
-   const bool json = !text.empty() && (text[0] == '[' || text[0] == '{' || text == "true" || text == "false" || parseNumber(text));
+   const bool json = !text.empty() && (text[0] == '[' || text[0] == '{' || text == "true" ||
+                                       text == "false" || parseNumber(text));
    if (json)
       if (auto value = parseJson(text, "argument"))
          return std::move(*value);
@@ -69,7 +71,8 @@ Result<nlohmann::json> argumentsOf(const std::vector<std::string> &words)
       }
       const auto equals = word.find('=');
       if (equals == 0 || equals == std::string::npos)
-         return Error{ErrorCode::usage, fmt::format("\"{}\": arguments are name=value or a JSON object", word)};
+         return Error{ErrorCode::usage,
+                      fmt::format("\"{}\": arguments are name=value or a JSON object", word)};
       arguments[word.substr(0, equals)] = argumentValue(word.substr(equals + 1));
    }
    return arguments;
@@ -139,12 +142,14 @@ void listCommands(Context &context)
       std::string parameters;
       for (const auto &p : command.parameters)
          parameters += fmt::format("{}{}{}", parameters.empty() ? "" : " ", p.name, p.required ? "" : "?");
-      nlohmann::ordered_json row = {{"command", command.id}, {"arguments", parameters}, {"does", command.help}};
+      nlohmann::ordered_json row = {
+          {"command", command.id}, {"arguments", parameters}, {"does", command.help}};
       if (context.json) {
          row["text"] = command.text;
          row["parameters"] = nlohmann::ordered_json::array();
          for (const auto &p : command.parameters)
-            row["parameters"].push_back({{"name", p.name}, {"kind", p.kind}, {"required", p.required}, {"help", p.help}});
+            row["parameters"].push_back(
+                {{"name", p.name}, {"kind", p.kind}, {"required", p.required}, {"help", p.help}});
       }
       rows.push_back(std::move(row));
    }
@@ -161,17 +166,21 @@ void addDo(CLI::App &app, Context &context)
    auto *single = app.add_subcommand("do", "Run one editing command on a design");
    single->add_option("FILE", options->file, kFileHelp)->required();
    single->add_option("COMMAND", options->command, "one that `diatom commands` lists")->required();
-   single->add_option("ARGUMENTS", options->arguments, "name=value (1,2,3 an index, 0,0,0:2,2,2 a box) or a JSON object");
+   single->add_option("ARGUMENTS", options->arguments,
+                      "name=value (1,2,3 an index, 0,0,0:2,2,2 a box) or a JSON object");
    single->add_option("-o,--output", options->out, "the .diatom document to write")->required();
    single->callback([&context, options] { runCommand(context, *options); });
 
    auto *log = app.add_subcommand("replay", "Run a log of editing commands on a design");
    log->add_option("FILE", options->file, kFileHelp)->required();
-   log->add_option("LOG", options->log, "one {\"command\", \"arguments\"} a line; lines with # are remarks")->required();
+   log->add_option("LOG", options->log, "one {\"command\", \"arguments\"} a line; lines with # are remarks")
+       ->required();
    log->add_option("-o,--output", options->out, "the .diatom document to write")->required();
    log->callback([&context, options] { replay(context, *options); });
 
-   app.add_subcommand("commands", "List the editing commands")->callback([&context] { listCommands(context); });
+   app.add_subcommand("commands", "List the editing commands")->callback([&context] {
+      listCommands(context);
+   });
 }
 
 } // namespace diatom::cli

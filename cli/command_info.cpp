@@ -51,7 +51,10 @@ void addInfo(CLI::App &app, Context &context)
 {
    auto *command = app.add_subcommand("info", "Say what a file holds: cells, materials, bounds, mass");
    const auto file = std::make_shared<std::string>();
-   command->add_option("FILE", *file, "a .diatom document or a file of AMOEBA or DMDesign; - reads standard input")->required();
+   command
+       ->add_option("FILE", *file,
+                    "a .diatom document or a file of AMOEBA or DMDesign; - reads standard input")
+       ->required();
    command->callback([&context, file] { showInfo(context, *file); });
 }
 

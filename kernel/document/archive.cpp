@@ -28,7 +28,8 @@ using Source = std::unique_ptr<zip_source_t, Free>;
 Result<std::string> drain(zip_source_t *source)
 {
    const auto failed = [source] {
-      return Error{ErrorCode::internal, fmt::format("packing failed: {}", zip_error_strerror(zip_source_error(source)))};
+      return Error{ErrorCode::internal,
+                   fmt::format("packing failed: {}", zip_error_strerror(zip_source_error(source)))};
    };
    zip_stat_t info;
    if (zip_source_stat(source, &info) != 0 || zip_source_open(source) != 0)
@@ -97,7 +98,8 @@ Result<Entries> readArchive(std::string_view bytes, const std::string &name, std
    static_cast<void>(source.release()); // the archive's now
    const auto count = zip_get_num_entries(archive.get(), 0);
    if (count < 0 || static_cast<std::uint64_t>(count) > entryLimit)
-      return refuse(fmt::format("the zip has {} entries, more than the {} a design may have", count, entryLimit));
+      return refuse(
+          fmt::format("the zip has {} entries, more than the {} a design may have", count, entryLimit));
    std::uint64_t total = 0;
    Entries entries;
    for (zip_uint64_t i = 0; i < static_cast<zip_uint64_t>(count); ++i) {
@@ -108,7 +110,8 @@ Result<Entries> readArchive(std::string_view bytes, const std::string &name, std
       total += std::min(info.size, byteLimit);
       if (info.size > byteLimit || total > byteLimit)
          return refuse(fmt::format("the zip unpacks to more than the {} bytes a design may have", byteLimit));
-      const std::unique_ptr<zip_file_t, int (*)(zip_file_t *)> file(zip_fopen_index(archive.get(), i, 0), zip_fclose);
+      const std::unique_ptr<zip_file_t, int (*)(zip_file_t *)> file(zip_fopen_index(archive.get(), i, 0),
+                                                                    zip_fclose);
       std::string content;
       char block[1 << 16];
       zip_int64_t got = 1;

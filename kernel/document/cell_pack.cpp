@@ -15,7 +15,8 @@ namespace diatom {
 namespace {
 
 constexpr std::string_view kMagic = "DIATCEL1";
-constexpr std::size_t kFrameBytes = std::size_t{16} << 20; // of content a frame; the reader refuses larger ones
+constexpr std::size_t kFrameBytes = std::size_t{16}
+                                    << 20; // of content a frame; the reader refuses larger ones
 constexpr int kLevel = 3;
 constexpr int kBrick = 16;
 
@@ -27,8 +28,8 @@ BrickKey keyOf(Index i) { return {i.z, i.y, i.x}; }
 Index cornerOf(const BrickKey &key) { return {std::get<2>(key), std::get<1>(key), std::get<0>(key)}; }
 std::int32_t down(std::int32_t v, std::int32_t size) { return floorDiv(v, size) * size; }
 
-/// Content split into the largest aligned cubes of one value (edge 16, 32, 64, ...) and bricks of 16^3 mixed cells:
-/// one way for any content.
+/// Content split into the largest aligned cubes of one value (edge 16, 32, 64, ...) and bricks of 16^3 mixed
+/// cells: one way for any content.
 class Splitter
 {
 public:
@@ -67,18 +68,21 @@ private:
    static bool isCube(const Box &box)
    {
       const std::int64_t n = std::int64_t{box.max.x} - box.min.x + 1;
-      const bool cube = n == std::int64_t{box.max.y} - box.min.y + 1 && n == std::int64_t{box.max.z} - box.min.z + 1;
+      const bool cube =
+          n == std::int64_t{box.max.y} - box.min.y + 1 && n == std::int64_t{box.max.z} - box.min.z + 1;
       if (!cube || n < kBrick || (n & (n - 1)) != 0)
          return false;
       const auto size = static_cast<std::int32_t>(n);
-      return floorMod(box.min.x, size) == 0 && floorMod(box.min.y, size) == 0 && floorMod(box.min.z, size) == 0;
+      return floorMod(box.min.x, size) == 0 && floorMod(box.min.y, size) == 0 &&
+             floorMod(box.min.z, size) == 0;
    }
 
    void addToBrick(Index corner, const Box &box, Cell cell)
    {
       const Index end = corner + Index{kBrick - 1, kBrick - 1, kBrick - 1};
-      const Box part{{std::max(corner.x, box.min.x), std::max(corner.y, box.min.y), std::max(corner.z, box.min.z)},
-                     {std::min(end.x, box.max.x), std::min(end.y, box.max.y), std::min(end.z, box.max.z)}};
+      const Box part{
+          {std::max(corner.x, box.min.x), std::max(corner.y, box.min.y), std::max(corner.z, box.min.z)},
+          {std::min(end.x, box.max.x), std::min(end.y, box.max.y), std::min(end.z, box.max.z)}};
       if (part.min == corner && part.max == end) {
          m_cubes[kBrick][keyOf(corner)] = cell.packed();
          return;
@@ -137,7 +141,8 @@ public:
    Status flush()
    {
       std::string packed(ZSTD_compressBound(m_content.size()), '\0');
-      const auto size = ZSTD_compress(packed.data(), packed.size(), m_content.data(), m_content.size(), kLevel);
+      const auto size =
+          ZSTD_compress(packed.data(), packed.size(), m_content.data(), m_content.size(), kLevel);
       if (ZSTD_isError(size))
          return Error{ErrorCode::internal, fmt::format("packing cells failed: {}", ZSTD_getErrorName(size))};
       m_bytes.append(packed.data(), size);
@@ -188,7 +193,8 @@ private:
       const auto packed = ZSTD_findFrameCompressedSize(m_bytes.data(), m_bytes.size());
       const auto size = ZSTD_getFrameContentSize(m_bytes.data(), m_bytes.size());
       if (ZSTD_isError(packed) || size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
-          size > kFrameBytes) {
+          size > kFrameBytes)
+      {
          error = "a block is cut short or is not one of ours";
          return false;
       }
@@ -220,8 +226,8 @@ std::string place(CellArray &cells, const Box &box, std::uint32_t packed, std::s
 {
    const Cell cell = Cell::unpacked(packed);
    if (cell.empty() || cell.material > materials || cell.joins > 3 || !inRange(box.min))
-      return fmt::format("the cell at [{}, {}, {}] has material {} of {}", box.min.x, box.min.y, box.min.z, cell.material,
-                         materials);
+      return fmt::format("the cell at [{}, {}, {}] has material {} of {}", box.min.x, box.min.y, box.min.z,
+                         cell.material, materials);
    if (box.min == box.max)
       cells.set(box.min, cell);
    else
@@ -259,9 +265,10 @@ Result<std::string> packCells(const CellArray &cells, const Job &job)
    if (job.cancelled())
       return Error{ErrorCode::cancelled, "packing cells was cancelled"};
    if (split.bricks().size() > CellBudget::kBricks)
-      return Error{ErrorCode::invalid, fmt::format("one body has more than {} bricks of single cells, more than a document may "
-                                                   "hold; split it into composites",
-                                                   CellBudget::kBricks)};
+      return Error{ErrorCode::invalid,
+                   fmt::format("one body has more than {} bricks of single cells, more than a document may "
+                               "hold; split it into composites",
+                               CellBudget::kBricks)};
    FrameWriter out;
    for (const auto &[edge, cubes] : split.cubes())
       for (const auto &[key, value] : cubes) {
@@ -284,7 +291,8 @@ Result<std::string> packCells(const CellArray &cells, const Job &job)
    return out.take();
 }
 
-Result<CellArray> unpackCells(std::string_view bytes, std::size_t materials, CellBudget &budget, const Job &job)
+Result<CellArray> unpackCells(std::string_view bytes, std::size_t materials, CellBudget &budget,
+                              const Job &job)
 {
    const auto refuse = [](std::string why) { return Error{ErrorCode::unreadable, std::move(why)}; };
    if (!bytes.starts_with(kMagic))
@@ -296,7 +304,8 @@ Result<CellArray> unpackCells(std::string_view bytes, std::size_t materials, Cel
          return Error{ErrorCode::cancelled, "opening was cancelled"};
       const auto edge = in.word();
       const Index corner = in.index();
-      const auto size = static_cast<std::int32_t>(edge == 0 ? kBrick : std::min(edge, std::uint32_t{1} << 30));
+      const auto size =
+          static_cast<std::int32_t>(edge == 0 ? kBrick : std::min(edge, std::uint32_t{1} << 30));
       const bool aligned = (size & (size - 1)) == 0 && size >= kBrick && floorMod(corner.x, size) == 0 &&
                            floorMod(corner.y, size) == 0 && floorMod(corner.z, size) == 0;
       // A brick at the lower border begins one index beyond it; its cells are checked one by one.
@@ -310,7 +319,8 @@ Result<CellArray> unpackCells(std::string_view bytes, std::size_t materials, Cel
          return refuse(fmt::format("it holds more than {} bricks", CellBudget::kBricks));
       if (!cells.visit(box, [](Index, Cell) { return false; }))
          return refuse(fmt::format("the block at [{}, {}, {}] is given twice", corner.x, corner.y, corner.z));
-      const auto fault = edge == 0 ? readBrick(in, cells, corner, materials) : place(cells, box, in.word(), materials);
+      const auto fault =
+          edge == 0 ? readBrick(in, cells, corner, materials) : place(cells, box, in.word(), materials);
       if (!fault.empty() || !in.error.empty())
          return refuse(fault.empty() ? in.error : fault);
    }

@@ -23,8 +23,8 @@ ordered_json indexJson(Index i) { return ordered_json::array({i.x, i.y, i.z}); }
 std::int32_t coordinate(const Index &i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }
 std::int32_t &coordinate(Index &i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }
 
-/// Merges blocks that touch along `axis` and agree in everything else. From single cells, x then y then z gives a
-/// partition that depends on the cells only.
+/// Merges blocks that touch along `axis` and agree in everything else. From single cells, x then y then z
+/// gives a partition that depends on the cells only.
 void mergeAlong(std::vector<Block> &blocks, int axis)
 {
    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -71,9 +71,10 @@ Run followRun(CellArray::Reader &reader, Index start, Index step, Cell first)
    return run;
 }
 
-/// Super-cells of one layer. A step is right when the runs along it cover exactly the joined cells of the layer; in a
-/// finite layer no wrong one can (the outermost run would have to continue beyond it).
-bool runsOfLayer(const CellArray &cells, const std::vector<std::pair<Index, Cell>> &joined, std::vector<Run> &out)
+/// Super-cells of one layer. A step is right when the runs along it cover exactly the joined cells of the
+/// layer; in a finite layer no wrong one can (the outermost run would have to continue beyond it).
+bool runsOfLayer(const CellArray &cells, const std::vector<std::pair<Index, Cell>> &joined,
+                 std::vector<Run> &out)
 {
    static constexpr Index kSteps[] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
    CellArray::Reader reader(cells);
@@ -103,7 +104,8 @@ ordered_json blockJson(const Block &block, const Model &model)
 {
    const auto &box = block.box;
    const auto &id = model.material(block.cell.material).id;
-   const ordered_json size = {box.max.x - box.min.x + 1, box.max.y - box.min.y + 1, box.max.z - box.min.z + 1};
+   const ordered_json size = {box.max.x - box.min.x + 1, box.max.y - box.min.y + 1,
+                              box.max.z - box.min.z + 1};
    const bool single = box.min == box.max;
    if (block.cell.orientation == 0 && block.cell.joins == 0) {
       auto entry = ordered_json::array({id, indexJson(box.min)});
@@ -118,7 +120,9 @@ ordered_json blockJson(const Block &block, const Model &model)
    if (block.cell.orientation != 0)
       entry["orientation"] = block.cell.orientation;
    if (block.cell.joins != 0)
-      entry["joins"] = block.cell.joins == 3 ? "both" : block.cell.joins == Cell::kJoinsNext ? "next" : "previous";
+      entry["joins"] = block.cell.joins == 3                  ? "both"
+                       : block.cell.joins == Cell::kJoinsNext ? "next"
+                                                              : "previous";
    return entry;
 }
 
@@ -156,9 +160,11 @@ ordered_json cellsText(const CellArray &cells, const Model &model)
    for (int axis = 0; axis < 3; ++axis)
       mergeAlong(blocks, axis);
    std::sort(blocks.begin(), blocks.end(), [](const Block &a, const Block &b) {
-      return std::make_pair(a.cell.packed(), byPlace(a.box.min)) < std::make_pair(b.cell.packed(), byPlace(b.box.min));
+      return std::make_pair(a.cell.packed(), byPlace(a.box.min)) <
+             std::make_pair(b.cell.packed(), byPlace(b.box.min));
    });
-   std::sort(runs.begin(), runs.end(), [](const Run &a, const Run &b) { return byPlace(a.start) < byPlace(b.start); });
+   std::sort(runs.begin(), runs.end(),
+             [](const Run &a, const Run &b) { return byPlace(a.start) < byPlace(b.start); });
    auto list = ordered_json::array();
    for (const auto &block : blocks)
       list.push_back(blockJson(block, model));
@@ -170,8 +176,8 @@ ordered_json cellsText(const CellArray &cells, const Model &model)
 bool CellBudget::take(const Box &box)
 {
    const auto brick = [](std::int32_t v) { return std::int64_t{floorDiv(v, 16)}; };
-   const std::int64_t x0 = brick(box.min.x), x1 = brick(box.max.x), y0 = brick(box.min.y), y1 = brick(box.max.y),
-                      z0 = brick(box.min.z), z1 = brick(box.max.z);
+   const std::int64_t x0 = brick(box.min.x), x1 = brick(box.max.x), y0 = brick(box.min.y),
+                      y1 = brick(box.max.y), z0 = brick(box.min.z), z1 = brick(box.max.z);
    m_touched += double(x1 - x0 + 1) * double(y1 - y0 + 1) * double(z1 - z0 + 1);
    if (m_touched > kWhole)
       return false;
@@ -181,8 +187,10 @@ bool CellBudget::take(const Box &box)
    for (std::int64_t x = x0; x <= x1; ++x)
       for (std::int64_t y = y0; y <= y1; ++y)
          for (std::int64_t z = z0; z <= z1; ++z) {
-            // A brick that is filled whole is stored as one value. Equal keys of different bricks only make it cheaper.
-            if (whole(x, box.min.x, box.max.x) && whole(y, box.min.y, box.max.y) && whole(z, box.min.z, box.max.z))
+            // A brick that is filled whole is stored as one value. Equal keys of different bricks only make
+            // it cheaper.
+            if (whole(x, box.min.x, box.max.x) && whole(y, box.min.y, box.max.y) &&
+                whole(z, box.min.z, box.max.z))
                continue;
             m_bricks.insert(static_cast<std::uint64_t>(x) * 0x9e3779b97f4a7c15ULL ^
                             static_cast<std::uint64_t>(y) * 0xc2b2ae3d27d4eb4fULL ^
@@ -207,7 +215,8 @@ namespace {
 class CellReader
 {
 public:
-   CellReader(const MaterialNames &materials, CellBudget &budget) : m_materials(materials), m_budget(budget) {}
+   CellReader(const MaterialNames &materials, CellBudget &budget) : m_materials(materials), m_budget(budget)
+   {}
 
    void entry(const JsonPlace &entry)
    {
@@ -236,8 +245,9 @@ private:
       if (!place.ok())
          return;
       if (!m_budget.take(box)) {
-         place.fail(fmt::format("with these cells the design needs more than {} bricks of memory; split it into composites",
-                                CellBudget::kBricks));
+         place.fail(fmt::format(
+             "with these cells the design needs more than {} bricks of memory; split it into composites",
+             CellBudget::kBricks));
          return;
       }
       Index there;
@@ -246,7 +256,8 @@ private:
          return false;
       };
       if (!m_cells.visit(box, found))
-         place.fail(fmt::format("cell [{}, {}, {}] is given twice; remove one of them", there.x, there.y, there.z));
+         place.fail(
+             fmt::format("cell [{}, {}, {}] is given twice; remove one of them", there.x, there.y, there.z));
       else if (box.min == box.max)
          m_cells.set(box.min, cell);
       else
@@ -291,7 +302,8 @@ private:
 
    std::uint8_t orientation(const JsonPlace &entry)
    {
-      return entry.has("orientation") ? static_cast<std::uint8_t>(entry.at("orientation").integer(0, 255)) : std::uint8_t{0};
+      return entry.has("orientation") ? static_cast<std::uint8_t>(entry.at("orientation").integer(0, 255))
+                                      : std::uint8_t{0};
    }
 
    void block(const JsonPlace &entry)

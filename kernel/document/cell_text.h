@@ -14,9 +14,9 @@
 
 namespace diatom {
 
-/// [["brass", [x, y, z]], ["brass", [x, y, z], [nx, ny, nz]], {"run": [x, y, z], "step": [0, 1, 0], "length": 4,
-/// "material": "brass"}, ...]: the same list for the same cells, however they came about. Expands every cell: for
-/// arrays of at most kReadableCells.
+/// [["brass", [x, y, z]], ["brass", [x, y, z], [nx, ny, nz]], {"run": [x, y, z], "step": [0, 1, 0], "length":
+/// 4, "material": "brass"}, ...]: the same list for the same cells, however they came about. Expands every
+/// cell: for arrays of at most kReadableCells.
 nlohmann::ordered_json cellsText(const CellArray &cells, const Model &model);
 
 inline constexpr std::uint64_t kReadableCells = 2'000'000;
@@ -28,7 +28,7 @@ public:
    /// False once the boxes given so far touch more bricks than a document may hold.
    bool take(const Box &box);
 
-   static constexpr std::uint64_t kBricks = 131072;     // of 16^3 explicit cells: 2 GiB
+   static constexpr std::uint64_t kBricks = 131072;         // of 16^3 explicit cells: 2 GiB
    static constexpr double kWhole = 32.0 * double(kBricks); // of one value each
 
 private:

@@ -7,15 +7,16 @@
 namespace diatom {
 
 Edit::Edit(CommandContext &context, const char *command, const nlohmann::json &arguments)
-   : m_context(context), m_design(context.design), m_log{command, {}, nlohmann::json::object()},
-     m_json(arguments.is_null() ? nlohmann::json::object() : arguments), m_arguments(m_json, m_log)
+    : m_context(context), m_design(context.design), m_log{command, {}, nlohmann::json::object()},
+      m_json(arguments.is_null() ? nlohmann::json::object() : arguments), m_arguments(m_json, m_log)
 {
    m_arguments.object();
    if (const auto *entry = findCommand(command); entry && m_json.is_object())
       for (const auto &[key, value] : m_json.items()) {
          const auto known = [&key](const CommandParameter &p) { return key == p.name; };
          if (std::none_of(entry->parameters.begin(), entry->parameters.end(), known))
-            fail(ErrorCode::usage, fmt::format("it has no argument \"{}\"; `diatom commands` lists them", key));
+            fail(ErrorCode::usage,
+                 fmt::format("it has no argument \"{}\"; `diatom commands` lists them", key));
       }
 }
 
@@ -47,8 +48,8 @@ std::shared_ptr<const Hierarchy> Edit::now()
    const auto *before = hierarchy();
    if (!before)
       return nullptr;
-   return std::make_shared<const Hierarchy>(std::shared_ptr<const Lattice>(m_before, &before->lattice()), m_design.model,
-                                            before);
+   return std::make_shared<const Hierarchy>(std::shared_ptr<const Lattice>(m_before, &before->lattice()),
+                                            m_design.model, before);
 }
 
 MaterialIndex Edit::material(std::string_view key)
@@ -131,7 +132,8 @@ std::string cellText(Index i) { return fmt::format("[{}, {}, {}]", i.x, i.y, i.z
 
 std::string sizeText(const Box &box)
 {
-   return fmt::format("{}x{}x{}", box.max.x - box.min.x + 1, box.max.y - box.min.y + 1, box.max.z - box.min.z + 1);
+   return fmt::format("{}x{}x{}", box.max.x - box.min.x + 1, box.max.y - box.min.y + 1,
+                      box.max.z - box.min.z + 1);
 }
 
 std::string countText(const char *what, std::size_t cells)

@@ -1,4 +1,5 @@
-// What the commands share: reading arguments, the lattice and hierarchy to edit on, and leaving nothing half done.
+// What the commands share: reading arguments, the lattice and hierarchy to edit on, and leaving nothing half
+// done.
 #pragma once
 
 #include "document/commands.h"
@@ -56,11 +57,12 @@ private:
    std::shared_ptr<const Hierarchy> m_before;
 };
 
-std::string cellText(Index i);              // "[1, 2, 3]"
-std::string sizeText(const Box &box);       // "3x3x3"
+std::string cellText(Index i);                              // "[1, 2, 3]"
+std::string sizeText(const Box &box);                       // "3x3x3"
 std::string countText(const char *what, std::size_t cells); // "place" for one, "place 5 cells"
 
 // The commands, by subject.
-extern const std::span<const Command> kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands, kSetupCommands;
+extern const std::span<const Command> kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands,
+    kSetupCommands;
 
 } // namespace diatom

@@ -12,7 +12,8 @@ namespace {
 std::vector<Command> allCommands()
 {
    std::vector<Command> all;
-   for (const auto part : {kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands, kSetupCommands})
+   for (const auto part :
+        {kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands, kSetupCommands})
       all.insert(all.end(), part.begin(), part.end());
    return all;
 }
@@ -28,7 +29,8 @@ std::span<const Command> commands()
 const Command *findCommand(std::string_view id)
 {
    const auto all = commands();
-   const auto found = std::find_if(all.begin(), all.end(), [id](const Command &command) { return id == command.id; });
+   const auto found =
+       std::find_if(all.begin(), all.end(), [id](const Command &command) { return id == command.id; });
    return found == all.end() ? nullptr : &*found;
 }
 

@@ -29,7 +29,9 @@ std::int64_t readLength(Edit &edit, const Lattice &lattice)
    constexpr std::int64_t kLongest = 10'000;
    if (!edit.arguments().has("length"))
       return lattice.hasSupercells() ? lattice.supercellDefault() : 1;
-   const auto most = !lattice.hasSupercells() ? 1 : lattice.supercellLongest() > 0 ? lattice.supercellLongest() : kLongest;
+   const auto most = !lattice.hasSupercells()         ? 1
+                     : lattice.supercellLongest() > 0 ? lattice.supercellLongest()
+                                                      : kLongest;
    return edit.arguments().at("length").integer(1, most);
 }
 
@@ -39,12 +41,14 @@ void placeRun(Edit &edit, const std::vector<Index> &run, MaterialIndex material,
    for (std::size_t k = 0; k < run.size() && edit.ok(); ++k) {
       const Index i = run[k];
       if (!inRange(i)) {
-         edit.fail(ErrorCode::invalid, fmt::format("{} is outside the index range; place it nearer to the origin", cellText(i)));
+         edit.fail(ErrorCode::invalid,
+                   fmt::format("{} is outside the index range; place it nearer to the origin", cellText(i)));
       } else if (const auto found = edit.hierarchy()->find(i); found && !found->path.empty()) {
-         edit.fail(ErrorCode::invalid, fmt::format("{} is taken by composite \"{}\"; erase that first", cellText(i),
-                                                   compositeName(edit.model(), *found)));
+         edit.fail(ErrorCode::invalid, fmt::format("{} is taken by composite \"{}\"; erase that first",
+                                                   cellText(i), compositeName(edit.model(), *found)));
       } else if (!cells.at(i).empty()) {
-         edit.fail(ErrorCode::invalid, fmt::format("{} is taken; erase or paint that cell instead", cellText(i)));
+         edit.fail(ErrorCode::invalid,
+                   fmt::format("{} is taken; erase or paint that cell instead", cellText(i)));
       } else {
          const auto joins = (k > 0 ? Cell::kJoinsPrevious : 0) | (k + 1 < run.size() ? Cell::kJoinsNext : 0);
          cells.set(i, {material, orientation, static_cast<std::uint8_t>(joins)});
@@ -66,8 +70,8 @@ Result<std::string> place(CommandContext &context, const nlohmann::json &argumen
    return edit.commit(cells.size() == 1 ? "place" : countText("place", cells.size()));
 }
 
-/// Erases what the cell belongs to: its super-cell, or the outermost composite. Cells that an earlier index of the same
-/// command took along are passed over.
+/// Erases what the cell belongs to: its super-cell, or the outermost composite. Cells that an earlier index
+/// of the same command took along are passed over.
 void eraseOne(Edit &edit, Index cell)
 {
    const auto found = edit.hierarchy()->find(cell);
@@ -100,8 +104,9 @@ void paintOne(Edit &edit, Index cell, MaterialIndex material, bool turn)
       return;
    }
    if (!found->path.empty()) {
-      edit.fail(ErrorCode::invalid, fmt::format("{} belongs to composite \"{}\"; dissolve it or paint its definition",
-                                                cellText(cell), compositeName(edit.model(), *found)));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("{} belongs to composite \"{}\"; dissolve it or paint its definition",
+                            cellText(cell), compositeName(edit.model(), *found)));
       return;
    }
    auto &cells = edit.model().root.cells;
@@ -127,27 +132,29 @@ Result<std::string> paint(CommandContext &context, const nlohmann::json &argumen
 }
 
 constexpr CommandParameter kPlace[] = {
-   {"cell", "index", false, "where; or `cells`"},
-   {"cells", "cells", false, "several places at once"},
-   {"material", "material", true, "id of the material"},
-   {"orientation", "number", false, "rotation number of the cell's shape"},
-   {"length", "number", false, "cells in a super-cell, where the lattice has them; default the lattice's own"},
+    {"cell", "index", false, "where; or `cells`"},
+    {"cells", "cells", false, "several places at once"},
+    {"material", "material", true, "id of the material"},
+    {"orientation", "number", false, "rotation number of the cell's shape"},
+    {"length", "number", false,
+     "cells in a super-cell, where the lattice has them; default the lattice's own"},
 };
 constexpr CommandParameter kErase[] = {
-   {"cell", "index", false, "any cell of what to erase; or `cells`"},
-   {"cells", "cells", false, "several at once"},
+    {"cell", "index", false, "any cell of what to erase; or `cells`"},
+    {"cells", "cells", false, "several at once"},
 };
 constexpr CommandParameter kPaint[] = {
-   {"cell", "index", false, "any cell of a super-cell; or `cells`"},
-   {"cells", "cells", false, "several at once"},
-   {"material", "material", true, "id of the new material"},
-   {"orientation", "number", false, "new rotation number; default as it was"},
+    {"cell", "index", false, "any cell of a super-cell; or `cells`"},
+    {"cells", "cells", false, "several at once"},
+    {"material", "material", true, "id of the new material"},
+    {"orientation", "number", false, "new rotation number; default as it was"},
 };
 
 constexpr Command kCommands[] = {
-   {"place", "Place cell", "Puts a cell or super-cell where nothing is.", kPlace, place},
-   {"erase", "Erase cell", "Removes a cell with its super-cell, or the composite it belongs to.", kErase, erase},
-   {"paint", "Paint cell", "Changes the material of a cell and its super-cell.", kPaint, paint},
+    {"place", "Place cell", "Puts a cell or super-cell where nothing is.", kPlace, place},
+    {"erase", "Erase cell", "Removes a cell with its super-cell, or the composite it belongs to.", kErase,
+     erase},
+    {"paint", "Paint cell", "Changes the material of a cell and its super-cell.", kPaint, paint},
 };
 
 } // namespace

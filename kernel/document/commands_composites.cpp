@@ -29,7 +29,8 @@ void gather(Edit &edit, const Box &box, Index origin, Body &body)
       if (cell.joins != 0)
          for (const Index j : before->supercell(i))
             if (!box.contains(j))
-               edit.fail(ErrorCode::invalid, fmt::format("the box cuts the super-cell at {}; make it larger", cellText(i)));
+               edit.fail(ErrorCode::invalid,
+                         fmt::format("the box cuts the super-cell at {}; make it larger", cellText(i)));
       return edit.ok() && !edit.job().cancelled();
    });
    std::vector<Placement> placed;
@@ -64,11 +65,13 @@ Result<std::string> defineComposite(CommandContext &context, const nlohmann::jso
       definition.color = edit.arguments().at("color").color();
    const Box box = edit.box();
    if (edit.ok() && edit.model().definition(definition.id) != 0)
-      edit.fail(ErrorCode::invalid, fmt::format("there is a composite \"{}\" already; choose another id", definition.id));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("there is a composite \"{}\" already; choose another id", definition.id));
    if (edit.ok() && edit.hierarchy()) {
       const Index origin = periodFloor(edit.hierarchy()->lattice(), box.min);
       gather(edit, box, origin, definition.body);
-      const auto added = edit.ok() ? edit.model().setDefinition(definition) : Result<DefinitionId>(DefinitionId{0});
+      const auto added =
+          edit.ok() ? edit.model().setDefinition(definition) : Result<DefinitionId>(DefinitionId{0});
       if (!added)
          edit.fail(added.error().code, added.error().message);
       else if (edit.ok())
@@ -88,7 +91,8 @@ std::optional<Index> collision(Edit &edit, const Placement &placement)
    const Hierarchy alone(lattice, std::move(one), before);
    const Box bounds = alone.bounds();
    if (!bounds.empty() && (!inRange(bounds.min) || !inRange(bounds.max))) {
-      edit.fail(ErrorCode::invalid, "the composite would lie outside the index range; place it nearer to the origin");
+      edit.fail(ErrorCode::invalid,
+                "the composite would lie outside the index range; place it nearer to the origin");
       return std::nullopt;
    }
    std::optional<Index> hit;
@@ -107,19 +111,25 @@ Result<std::string> placeComposite(CommandContext &context, const nlohmann::json
    const auto id = edit.arguments().at("definition").text();
    Placement placement{edit.model().definition(id), edit.arguments().at("cell").index(), 0};
    if (edit.ok() && placement.definition == 0)
-      edit.fail(ErrorCode::usage, fmt::format("there is no composite \"{}\"; make it with define-composite", id));
+      edit.fail(ErrorCode::usage,
+                fmt::format("there is no composite \"{}\"; make it with define-composite", id));
    if (edit.ok() && edit.hierarchy()) {
       const auto &lattice = edit.hierarchy()->lattice();
       if (edit.arguments().has("rotation"))
          placement.rotation = static_cast<std::uint8_t>(
-            edit.arguments().at("rotation").integer(0, static_cast<std::int64_t>(lattice.rotations().size()) - 1));
+             edit.arguments()
+                 .at("rotation")
+                 .integer(0, static_cast<std::int64_t>(lattice.rotations().size()) - 1));
       if (edit.ok() && !lattice.placementAllowed(placement.origin, placement.rotation))
-         edit.fail(ErrorCode::invalid, fmt::format("the lattice does not fit onto itself with rotation {} at {}; the directions of "
-                                                   "its cells differ there",
-                                                   placement.rotation, cellText(placement.origin)));
+         edit.fail(
+             ErrorCode::invalid,
+             fmt::format("the lattice does not fit onto itself with rotation {} at {}; the directions of "
+                         "its cells differ there",
+                         placement.rotation, cellText(placement.origin)));
       if (edit.ok())
          if (const auto hit = collision(edit, placement))
-            edit.fail(ErrorCode::invalid, fmt::format("{} is taken; place the composite elsewhere", cellText(*hit)));
+            edit.fail(ErrorCode::invalid,
+                      fmt::format("{} is taken; place the composite elsewhere", cellText(*hit)));
       if (edit.ok())
          edit.model().root.instances.insert(placement);
    }
@@ -127,11 +137,13 @@ Result<std::string> placeComposite(CommandContext &context, const nlohmann::json
 }
 
 /// Joins of a cell after its super-cell was turned: a run may now be read from its other end.
-std::uint8_t turnedJoins(const Lattice &lattice, const Placement &placement, Index local, Cell cell, Index world)
+std::uint8_t turnedJoins(const Lattice &lattice, const Placement &placement, Index local, Cell cell,
+                         Index world)
 {
    if (cell.joins == 0 || placement.rotation == 0)
       return cell.joins;
-   const Index next = lattice.place(placement.origin, placement.rotation, local + lattice.supercellStep(lattice.site(local)));
+   const Index next = lattice.place(placement.origin, placement.rotation,
+                                    local + lattice.supercellStep(lattice.site(local)));
    if (next == world + lattice.supercellStep(lattice.site(world)))
       return cell.joins;
    return static_cast<std::uint8_t>(((cell.joins & Cell::kJoinsNext) ? Cell::kJoinsPrevious : 0) |
@@ -157,14 +169,15 @@ Result<std::string> dissolve(CommandContext &context, const nlohmann::json &argu
       definition->body.cells.visit([&](Index local, Cell content) {
          const Index world = lattice.place(placement.origin, placement.rotation, local);
          content.joins = turnedJoins(lattice, placement, local, content, world);
-         content.orientation =
-            static_cast<std::uint8_t>(lattice.turnedOrientation(local, placement.rotation, content.orientation));
+         content.orientation = static_cast<std::uint8_t>(
+             lattice.turnedOrientation(local, placement.rotation, content.orientation));
          root.cells.set(world, content);
          return !edit.job().cancelled();
       });
       definition->body.instances.visit([&](const Placement &nested) {
-         root.instances.insert({nested.definition, lattice.place(placement.origin, placement.rotation, nested.origin),
-                                static_cast<std::uint8_t>(lattice.compose(placement.rotation, nested.rotation))});
+         root.instances.insert(
+             {nested.definition, lattice.place(placement.origin, placement.rotation, nested.origin),
+              static_cast<std::uint8_t>(lattice.compose(placement.rotation, nested.rotation))});
          return true;
       });
    }
@@ -185,25 +198,28 @@ Result<std::string> removeComposite(CommandContext &context, const nlohmann::jso
 }
 
 constexpr CommandParameter kDefine[] = {
-   {"id", "text", true, "id of the new composite"},
-   {"box", "box", true, "two opposite corners of what to group"},
-   {"name", "text", false, "name for people"},
-   {"color", "text", false, "like #cda4f3"},
+    {"id", "text", true, "id of the new composite"},
+    {"box", "box", true, "two opposite corners of what to group"},
+    {"name", "text", false, "name for people"},
+    {"color", "text", false, "like #cda4f3"},
 };
 constexpr CommandParameter kPlaceComposite[] = {
-   {"definition", "text", true, "id of the composite"},
-   {"cell", "index", true, "where its own cell [0, 0, 0] goes"},
-   {"rotation", "number", false, "rotation number of the lattice"},
+    {"definition", "text", true, "id of the composite"},
+    {"cell", "index", true, "where its own cell [0, 0, 0] goes"},
+    {"rotation", "number", false, "rotation number of the lattice"},
 };
 constexpr CommandParameter kAtCell[] = {{"cell", "index", true, "any of its cells"}};
 constexpr CommandParameter kDefinition[] = {{"definition", "text", true, "id of the composite"}};
 
 constexpr Command kCommands[] = {
-   {"define-composite", "Group into composite", "Makes a composite of what is in a box and puts an instance there.", kDefine,
-    defineComposite},
-   {"place-composite", "Place composite", "Puts an instance of a composite where nothing is.", kPlaceComposite, placeComposite},
-   {"dissolve", "Dissolve composite", "Replaces an instance by its content, one level deep.", kAtCell, dissolve},
-   {"remove-composite", "Remove composite", "Forgets a definition that is used nowhere.", kDefinition, removeComposite},
+    {"define-composite", "Group into composite",
+     "Makes a composite of what is in a box and puts an instance there.", kDefine, defineComposite},
+    {"place-composite", "Place composite", "Puts an instance of a composite where nothing is.",
+     kPlaceComposite, placeComposite},
+    {"dissolve", "Dissolve composite", "Replaces an instance by its content, one level deep.", kAtCell,
+     dissolve},
+    {"remove-composite", "Remove composite", "Forgets a definition that is used nowhere.", kDefinition,
+     removeComposite},
 };
 
 } // namespace

@@ -48,7 +48,8 @@ Result<std::string> removeMaterial(CommandContext &context, const nlohmann::json
    const auto material = edit.material("id");
    const auto cells = edit.ok() ? uses(edit.model(), material) : 0;
    if (cells > 0)
-      edit.fail(ErrorCode::invalid, fmt::format("{} cells are made of it; replace or erase them first", cells));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("{} cells are made of it; replace or erase them first", cells));
    std::string id;
    if (edit.ok()) {
       auto materials = *edit.model().materials;
@@ -77,7 +78,8 @@ Result<std::string> replaceMaterial(CommandContext &context, const nlohmann::jso
    return edit.commit("replace material");
 }
 
-/// Cells keep their indices on another lattice, but turned cells, super-cells and composites mean something else there.
+/// Cells keep their indices on another lattice, but turned cells, super-cells and composites mean something
+/// else there.
 bool plainCells(const Model &model)
 {
    if (!model.definitions.empty())
@@ -105,8 +107,9 @@ Result<std::string> setLattice(CommandContext &context, const nlohmann::json &ar
       for (std::size_t a = 0; a < 3; ++a)
          lattice.aspect[a] = given.at("aspect").at(a).number(1e-6, 1e6);
    if (edit.ok() && lattice.id != old.id && !plainCells(edit.model()))
-      edit.fail(ErrorCode::invalid, "composites, super-cells and turned cells do not carry over to another lattice; start a new "
-                                    "design for it");
+      edit.fail(ErrorCode::invalid,
+                "composites, super-cells and turned cells do not carry over to another lattice; start a new "
+                "design for it");
    if (edit.ok()) {
       const auto made = Lattice::make(edit.catalogue(), lattice, edit.job());
       if (!made)
@@ -116,36 +119,37 @@ Result<std::string> setLattice(CommandContext &context, const nlohmann::json &ar
 }
 
 constexpr CommandParameter kSetMaterial[] = {
-   {"id", "text", true, "id of a new or known material; what is not given stays as it is"},
-   {"name", "text", false, "name for people"},
-   {"color", "text", false, "like #cda4f3"},
-   {"density_kg_m3", "number", false, "mass of a solid cell over its volume"},
-   {"youngs_modulus_Pa", "number", false, "stiffness"},
-   {"poisson_ratio", "number", false, "sideways strain over strain"},
-   {"damping_ratio", "number", false, "of each bond, 1 = critical"},
-   {"role", "text", false, "insulator, conductor, source or actuator"},
-   {"bonds", "object", false, "the fifteen stiffnesses, instead of Young's modulus and Poisson's ratio"},
-   {"ports", "list", false, "faces that conduct: \"-x\", \"+x\", ..."},
-   {"actuation", "object", false, "mode, axis, strain_per_V, axis_from_wires"},
+    {"id", "text", true, "id of a new or known material; what is not given stays as it is"},
+    {"name", "text", false, "name for people"},
+    {"color", "text", false, "like #cda4f3"},
+    {"density_kg_m3", "number", false, "mass of a solid cell over its volume"},
+    {"youngs_modulus_Pa", "number", false, "stiffness"},
+    {"poisson_ratio", "number", false, "sideways strain over strain"},
+    {"damping_ratio", "number", false, "of each bond, 1 = critical"},
+    {"role", "text", false, "insulator, conductor, source or actuator"},
+    {"bonds", "object", false, "the fifteen stiffnesses, instead of Young's modulus and Poisson's ratio"},
+    {"ports", "list", false, "faces that conduct: \"-x\", \"+x\", ..."},
+    {"actuation", "object", false, "mode, axis, strain_per_V, axis_from_wires"},
 };
 constexpr CommandParameter kId[] = {{"id", "material", true, "id of the material"}};
 constexpr CommandParameter kReplace[] = {
-   {"from", "material", true, "id of the material to replace"},
-   {"to", "material", true, "id of the material that takes its place"},
+    {"from", "material", true, "id of the material to replace"},
+    {"to", "material", true, "id of the material that takes its place"},
 };
 constexpr CommandParameter kLattice[] = {
-   {"id", "text", false, "like kelvin or org.diatom_cad.lattice.kelvin"},
-   {"values", "object", false, "the lattice's own parameters"},
-   {"pitch_m", "number", false, "metres per lattice unit"},
-   {"aspect", "list", false, "scale along x, y and z"},
+    {"id", "text", false, "like kelvin or org.diatom_cad.lattice.kelvin"},
+    {"values", "object", false, "the lattice's own parameters"},
+    {"pitch_m", "number", false, "metres per lattice unit"},
+    {"aspect", "list", false, "scale along x, y and z"},
 };
 
 constexpr Command kCommands[] = {
-   {"set-material", "Set material", "Adds a material or changes one.", kSetMaterial, setMaterial},
-   {"remove-material", "Remove material", "Removes a material that no cell is made of.", kId, removeMaterial},
-   {"replace-material", "Replace material", "Makes everything of one material of another, composites included.", kReplace,
-    replaceMaterial},
-   {"set-lattice", "Set lattice", "Changes the lattice, its pitch or its parameters.", kLattice, setLattice},
+    {"set-material", "Set material", "Adds a material or changes one.", kSetMaterial, setMaterial},
+    {"remove-material", "Remove material", "Removes a material that no cell is made of.", kId,
+     removeMaterial},
+    {"replace-material", "Replace material",
+     "Makes everything of one material of another, composites included.", kReplace, replaceMaterial},
+    {"set-lattice", "Set lattice", "Changes the lattice, its pitch or its parameters.", kLattice, setLattice},
 };
 
 } // namespace

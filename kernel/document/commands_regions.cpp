@@ -29,7 +29,10 @@ Box instanceBounds(Edit &edit, const Placement &placement)
    return Hierarchy(lattice, std::move(one), before).bounds();
 }
 
-bool inside(const Box &inner, const Box &outer) { return outer.contains(inner.min) && outer.contains(inner.max); }
+bool inside(const Box &inner, const Box &outer)
+{
+   return outer.contains(inner.min) && outer.contains(inner.max);
+}
 
 Region regionOf(Edit &edit, const Box &box)
 {
@@ -40,7 +43,8 @@ Region regionOf(Edit &edit, const Box &box)
       if (cell.joins != 0)
          for (const Index j : before->supercell(i))
             if (!box.contains(j))
-               edit.fail(ErrorCode::invalid, fmt::format("the box cuts the super-cell at {}; make it larger", cellText(i)));
+               edit.fail(ErrorCode::invalid,
+                         fmt::format("the box cuts the super-cell at {}; make it larger", cellText(i)));
       return edit.ok() && !edit.job().cancelled();
    });
    edit.model().root.instances.visit([&](const Placement &placement) {
@@ -107,10 +111,12 @@ void putRegion(Edit &edit, const Region &region, Index by)
 void checkShift(Edit &edit, Index by)
 {
    const auto period = edit.hierarchy()->lattice().period();
-   const bool whole = floorMod(by.x, period[0]) == 0 && floorMod(by.y, period[1]) == 0 && floorMod(by.z, period[2]) == 0;
+   const bool whole =
+       floorMod(by.x, period[0]) == 0 && floorMod(by.y, period[1]) == 0 && floorMod(by.z, period[2]) == 0;
    if (!whole)
-      edit.fail(ErrorCode::invalid, fmt::format("this lattice repeats every [{}, {}, {}] cells; move by a multiple of that",
-                                                period[0], period[1], period[2]));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("this lattice repeats every [{}, {}, {}] cells; move by a multiple of that",
+                            period[0], period[1], period[2]));
    const auto near = [](std::int32_t v) { return v >= -kIndexLimit && v <= kIndexLimit; };
    if (!near(by.x) || !near(by.y) || !near(by.z))
       edit.fail(ErrorCode::invalid, "the distance is outside the index range");
@@ -156,7 +162,9 @@ Result<std::string> arrayBox(CommandContext &context, const nlohmann::json &argu
       checkShift(edit, step);
       const auto region = regionOf(edit, box);
       for (std::int64_t copy = 1; copy < count && edit.ok() && !edit.job().cancelled(); ++copy) {
-         const auto scaled = [copy](std::int32_t v) { return std::clamp<std::int64_t>(v * copy, -kIndexLimit, kIndexLimit); };
+         const auto scaled = [copy](std::int32_t v) {
+            return std::clamp<std::int64_t>(v * copy, -kIndexLimit, kIndexLimit);
+         };
          putRegion(edit, region,
                    {static_cast<std::int32_t>(scaled(step.x)), static_cast<std::int32_t>(scaled(step.y)),
                     static_cast<std::int32_t>(scaled(step.z))});
@@ -170,9 +178,10 @@ void fillSupercells(Edit &edit, const Box &box, Cell cell)
 {
    const auto &lattice = edit.hierarchy()->lattice();
    if (box.volume() > kMostBricksFilled) {
-      edit.fail(ErrorCode::invalid, fmt::format("a box of more than {:.0f} cells cannot be filled with super-cells at once; fill "
-                                                "a smaller one and use composites",
-                                                kMostBricksFilled));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("a box of more than {:.0f} cells cannot be filled with super-cells at once; fill "
+                            "a smaller one and use composites",
+                            kMostBricksFilled));
       return;
    }
    auto &cells = edit.model().root.cells;
@@ -189,19 +198,22 @@ void fillSupercells(Edit &edit, const Box &box, Cell cell)
             const auto length = static_cast<std::size_t>(std::max(1, lattice.supercellDefault()));
             for (std::size_t k = 0; k < row.size(); ++k) {
                const bool first = k % length == 0, last = k % length == length - 1 || k + 1 == row.size();
-               cell.joins = static_cast<std::uint8_t>((first ? 0 : Cell::kJoinsPrevious) | (last ? 0 : Cell::kJoinsNext));
+               cell.joins = static_cast<std::uint8_t>((first ? 0 : Cell::kJoinsPrevious) |
+                                                      (last ? 0 : Cell::kJoinsNext));
                cells.set(row[k], cell);
             }
          }
 }
 
-/// Faults of a fill: cells of composites in the box, super-cells cut by it, more memory than a document may hold.
+/// Faults of a fill: cells of composites in the box, super-cells cut by it, more memory than a document may
+/// hold.
 void checkFill(Edit &edit, const Box &box)
 {
    CellBudget budget;
    if (!budget.take(box)) {
-      edit.fail(ErrorCode::invalid, fmt::format("a box of {} is more than a document may hold at once; build it of composites",
-                                                sizeText(box)));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("a box of {} is more than a document may hold at once; build it of composites",
+                            sizeText(box)));
       return;
    }
    const auto *before = edit.hierarchy();
@@ -209,7 +221,9 @@ void checkFill(Edit &edit, const Box &box)
    if (edit.model().root.instances.count() > 0)
       before->visit(box, [&](Index i, Cell) {
          if (cells.at(i).empty())
-            edit.fail(ErrorCode::invalid, fmt::format("{} belongs to a composite; fill around it or erase it first", cellText(i)));
+            edit.fail(
+                ErrorCode::invalid,
+                fmt::format("{} belongs to a composite; fill around it or erase it first", cellText(i)));
          return edit.ok();
       });
    if (!before->lattice().hasSupercells())
@@ -218,7 +232,8 @@ void checkFill(Edit &edit, const Box &box)
       if (cell.joins != 0)
          for (const Index j : before->supercell(i))
             if (!box.contains(j))
-               edit.fail(ErrorCode::invalid, fmt::format("the box cuts the super-cell at {}; make it larger", cellText(i)));
+               edit.fail(ErrorCode::invalid,
+                         fmt::format("the box cuts the super-cell at {}; make it larger", cellText(i)));
       return edit.ok();
    });
 }
@@ -257,8 +272,10 @@ Result<std::string> eraseBox(CommandContext &context, const nlohmann::json &argu
       } else {
          // What is there is less than the box: never make bricks only to empty them.
          Box used = root.cells.bounds();
-         used = {{std::max(used.min.x, box.min.x), std::max(used.min.y, box.min.y), std::max(used.min.z, box.min.z)},
-                 {std::min(used.max.x, box.max.x), std::min(used.max.y, box.max.y), std::min(used.max.z, box.max.z)}};
+         used = {{std::max(used.min.x, box.min.x), std::max(used.min.y, box.min.y),
+                  std::max(used.min.z, box.min.z)},
+                 {std::min(used.max.x, box.max.x), std::min(used.max.y, box.max.y),
+                  std::min(used.max.z, box.max.z)}};
          if (!used.empty())
             root.cells.fill(used, {});
       }
@@ -278,27 +295,28 @@ Result<std::string> eraseBox(CommandContext &context, const nlohmann::json &argu
 }
 
 constexpr CommandParameter kFill[] = {
-   {"box", "box", true, "two opposite corners"},
-   {"material", "material", true, "id of the material"},
-   {"orientation", "number", false, "rotation number of the cells' shape"},
+    {"box", "box", true, "two opposite corners"},
+    {"material", "material", true, "id of the material"},
+    {"orientation", "number", false, "rotation number of the cells' shape"},
 };
 constexpr CommandParameter kBox[] = {{"box", "box", true, "two opposite corners"}};
 constexpr CommandParameter kTo[] = {
-   {"box", "box", true, "two opposite corners"},
-   {"to", "index", true, "where the box's lowest corner goes"},
+    {"box", "box", true, "two opposite corners"},
+    {"to", "index", true, "where the box's lowest corner goes"},
 };
 constexpr CommandParameter kArray[] = {
-   {"box", "box", true, "two opposite corners"},
-   {"step", "index", true, "from one copy to the next"},
-   {"count", "number", true, "how many in all, the original included"},
+    {"box", "box", true, "two opposite corners"},
+    {"step", "index", true, "from one copy to the next"},
+    {"count", "number", true, "how many in all, the original included"},
 };
 
 constexpr Command kCommands[] = {
-   {"fill", "Fill box", "Fills a box with a material, replacing cells that are there.", kFill, fill},
-   {"erase-box", "Erase box", "Removes every cell, super-cell and composite that a box touches.", kBox, eraseBox},
-   {"clone", "Clone box", "Copies what is in a box to another place.", kTo, cloneBox},
-   {"move", "Move box", "Moves what is in a box to another place.", kTo, moveBox},
-   {"array", "Array", "Repeats what is in a box along a step.", kArray, arrayBox},
+    {"fill", "Fill box", "Fills a box with a material, replacing cells that are there.", kFill, fill},
+    {"erase-box", "Erase box", "Removes every cell, super-cell and composite that a box touches.", kBox,
+     eraseBox},
+    {"clone", "Clone box", "Copies what is in a box to another place.", kTo, cloneBox},
+    {"move", "Move box", "Moves what is in a box to another place.", kTo, moveBox},
+    {"array", "Array", "Repeats what is in a box along a step.", kArray, arrayBox},
 };
 
 } // namespace

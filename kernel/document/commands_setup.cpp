@@ -34,7 +34,8 @@ std::vector<Index> existingCells(Edit &edit)
    if (cells.empty())
       edit.fail(ErrorCode::invalid, "there are no cells in the box");
    if (cells.size() > kMostSupports)
-      edit.fail(ErrorCode::invalid, fmt::format("there are more than {} cells in the box; take a smaller one", kMostSupports));
+      edit.fail(ErrorCode::invalid,
+                fmt::format("there are more than {} cells in the box; take a smaller one", kMostSupports));
    return cells;
 }
 
@@ -48,14 +49,16 @@ Result<std::string> support(CommandContext &context, const nlohmann::json &argum
 {
    Edit edit(context, "support", arguments);
    const auto cells = existingCells(edit);
-   const auto fixed = edit.arguments().has("fixed") ? readFixed(edit.arguments().at("fixed")) : std::uint8_t{0x3f};
+   const auto fixed =
+       edit.arguments().has("fixed") ? readFixed(edit.arguments().at("fixed")) : std::uint8_t{0x3f};
    auto &supports = edit.design().setup.supports;
    std::set<Index> changed(cells.begin(), cells.end());
    std::erase_if(supports, [&changed](const Support &s) { return changed.contains(s.cell); });
    for (const Index cell : changed)
       if (fixed != 0)
          supports.push_back({cell, fixed});
-   std::sort(supports.begin(), supports.end(), [](const Support &a, const Support &b) { return a.cell < b.cell; });
+   std::sort(supports.begin(), supports.end(),
+             [](const Support &a, const Support &b) { return a.cell < b.cell; });
    return edit.commit(countText("support", cells.size()));
 }
 
@@ -92,7 +95,8 @@ Result<std::string> source(CommandContext &context, const nlohmann::json &argume
    const auto known = std::find_if(sources.begin(), sources.end(),
                                    [&](const Source &s) { return !cells.empty() && s.cell == cells[0]; });
    // What is not given stays as it is.
-   nlohmann::json merged = known == sources.end() ? nlohmann::json::object() : nlohmann::json(sourceJson(*known));
+   nlohmann::json merged =
+       known == sources.end() ? nlohmann::json::object() : nlohmann::json(sourceJson(*known));
    if (edit.ok())
       merged.merge_patch(edit.arguments().json());
    ReadLog log{"source", {}, nlohmann::json::object()};
@@ -102,8 +106,9 @@ Result<std::string> source(CommandContext &context, const nlohmann::json &argume
    if (edit.ok()) {
       const auto &model = edit.model();
       if (model.material(edit.hierarchy()->at(item.cell).material).role != ElectricalRole::source)
-         edit.fail(ErrorCode::invalid, fmt::format("the cell at {} is not a source; paint it with a material of that role first",
-                                                   cellText(item.cell)));
+         edit.fail(ErrorCode::invalid,
+                   fmt::format("the cell at {} is not a source; paint it with a material of that role first",
+                               cellText(item.cell)));
       if (known == sources.end())
          sources.push_back(item);
       else
@@ -209,66 +214,66 @@ Result<std::string> setSolver(CommandContext &context, const nlohmann::json &arg
 }
 
 constexpr CommandParameter kSupport[] = {
-   {"cell", "index", false, "which cell; or `cells` or `box`"},
-   {"cells", "cells", false, "several cells"},
-   {"box", "box", false, "every cell in a box"},
-   {"fixed", "list", false, "of x, y, z, rx, ry, rz; default all"},
+    {"cell", "index", false, "which cell; or `cells` or `box`"},
+    {"cells", "cells", false, "several cells"},
+    {"box", "box", false, "every cell in a box"},
+    {"fixed", "list", false, "of x, y, z, rx, ry, rz; default all"},
 };
 constexpr CommandParameter kUnsupport[] = {
-   {"cell", "index", false, "which cell; or `cells` or `box`"},
-   {"cells", "cells", false, "several cells"},
-   {"box", "box", false, "every cell in a box"},
+    {"cell", "index", false, "which cell; or `cells` or `box`"},
+    {"cells", "cells", false, "several cells"},
+    {"box", "box", false, "every cell in a box"},
 };
 constexpr CommandParameter kLoad[] = {
-   {"cell", "index", true, "which cell"},
-   {"force_N", "list", false, "along x, y and z; without force and moment the load is removed"},
-   {"moment_N_m", "list", false, "about x, y and z"},
+    {"cell", "index", true, "which cell"},
+    {"force_N", "list", false, "along x, y and z; without force and moment the load is removed"},
+    {"moment_N_m", "list", false, "about x, y and z"},
 };
 constexpr CommandParameter kSource[] = {
-   {"cell", "index", true, "a cell of a source material; what is not given stays as it is"},
-   {"waveform", "text", false, "sine, square, saw or triangle"},
-   {"frequency_Hz", "number", false, "repetitions a second"},
-   {"phase", "number", false, "turns, 0 to 1"},
-   {"duty", "number", false, "high part of a square wave, 0 to 1"},
-   {"inverted", "boolean", false, "a falling saw"},
-   {"amplitude_V", "number", false, "peak to peak"},
+    {"cell", "index", true, "a cell of a source material; what is not given stays as it is"},
+    {"waveform", "text", false, "sine, square, saw or triangle"},
+    {"frequency_Hz", "number", false, "repetitions a second"},
+    {"phase", "number", false, "turns, 0 to 1"},
+    {"duty", "number", false, "high part of a square wave, 0 to 1"},
+    {"inverted", "boolean", false, "a falling saw"},
+    {"amplitude_V", "number", false, "peak to peak"},
 };
 constexpr CommandParameter kCell[] = {{"cell", "index", true, "which cell"}};
 constexpr CommandParameter kGravity[] = {{"gravity_m_s2", "list", true, "along x, y and z"}};
 constexpr CommandParameter kGround[] = {
-   {"present", "boolean", false, "false removes the ground"},
-   {"height_m", "number", false, "of the plane that lower faces rest on"},
-   {"stiffness_N_m", "number", false, "per cell"},
-   {"damping_N_s_m", "number", false, "per cell"},
-   {"friction", "number", false, "Coulomb coefficient; 0 = none"},
+    {"present", "boolean", false, "false removes the ground"},
+    {"height_m", "number", false, "of the plane that lower faces rest on"},
+    {"stiffness_N_m", "number", false, "per cell"},
+    {"damping_N_s_m", "number", false, "per cell"},
+    {"friction", "number", false, "Coulomb coefficient; 0 = none"},
 };
 constexpr CommandParameter kDrag[] = {{"drag_1_s", "number", true, "slows all motion in proportion to mass"}};
 constexpr CommandParameter kStep[] = {{"step_s", "number", true, "0 = the solver's stable step"}};
 constexpr CommandParameter kEffect[] = {
-   {"effect", "text", true, "name as `diatom effects` prints it"},
-   {"forced", "text", true, "on, off, or auto to leave it to the planner"},
+    {"effect", "text", true, "name as `diatom effects` prints it"},
+    {"forced", "text", true, "on, off, or auto to leave it to the planner"},
 };
 constexpr CommandParameter kName[] = {{"name", "text", true, "of the design"}};
 constexpr CommandParameter kChoice[] = {
-   {"id", "text", false, "as `diatom plugins` prints it"},
-   {"values", "object", false, "its parameters"},
+    {"id", "text", false, "as `diatom plugins` prints it"},
+    {"values", "object", false, "its parameters"},
 };
 
 constexpr Command kCommands[] = {
-   {"support", "Support cells", "Holds cells at rest, in all or some of their freedoms.", kSupport, support},
-   {"unsupport", "Release cells", "Removes supports.", kUnsupport, unsupport},
-   {"load", "Load cell", "Puts a constant force and moment on a cell.", kLoad, load},
-   {"source", "Set signal", "Sets what a source cell drives its wires with.", kSource, source},
-   {"remove-source", "Remove signal", "Leaves a source cell without a signal.", kCell, removeSource},
-   {"gravity", "Set gravity", "Sets the acceleration that everything feels.", kGravity, gravity},
-   {"ground", "Set ground", "Sets the plane that cells rest on.", kGround, ground},
-   {"drag", "Set drag", "Sets how fast motion dies out by itself.", kDrag, drag},
-   {"step", "Set time step", "Sets the step the design asks for.", kStep, step},
-   {"effect", "Force effect", "Forces an effect of the simulation on or off.", kEffect, effect},
-   {"set-solver", "Choose solver", "Chooses the solver and its parameters.", kChoice, setSolver},
-   {"set-name", "Set name", "Names the design.", kName, setName},
-   {"set-parts", "Choose parts", "Chooses what parts cells are made of.", kChoice, setParts},
-   {"set-machine", "Choose machine", "Chooses the machine that assembles.", kChoice, setMachine},
+    {"support", "Support cells", "Holds cells at rest, in all or some of their freedoms.", kSupport, support},
+    {"unsupport", "Release cells", "Removes supports.", kUnsupport, unsupport},
+    {"load", "Load cell", "Puts a constant force and moment on a cell.", kLoad, load},
+    {"source", "Set signal", "Sets what a source cell drives its wires with.", kSource, source},
+    {"remove-source", "Remove signal", "Leaves a source cell without a signal.", kCell, removeSource},
+    {"gravity", "Set gravity", "Sets the acceleration that everything feels.", kGravity, gravity},
+    {"ground", "Set ground", "Sets the plane that cells rest on.", kGround, ground},
+    {"drag", "Set drag", "Sets how fast motion dies out by itself.", kDrag, drag},
+    {"step", "Set time step", "Sets the step the design asks for.", kStep, step},
+    {"effect", "Force effect", "Forces an effect of the simulation on or off.", kEffect, effect},
+    {"set-solver", "Choose solver", "Chooses the solver and its parameters.", kChoice, setSolver},
+    {"set-name", "Set name", "Names the design.", kName, setName},
+    {"set-parts", "Choose parts", "Chooses what parts cells are made of.", kChoice, setParts},
+    {"set-machine", "Choose machine", "Chooses the machine that assembles.", kChoice, setMachine},
 };
 
 } // namespace

@@ -6,7 +6,8 @@
 
 namespace diatom {
 
-Document::Document(std::shared_ptr<const Catalogue> catalogue, Design design) : m_catalogue(std::move(catalogue))
+Document::Document(std::shared_ptr<const Catalogue> catalogue, Design design)
+    : m_catalogue(std::move(catalogue))
 {
    m_history.push_back({std::move(design), {}, {}});
 }
@@ -34,7 +35,8 @@ Status Document::run(std::string_view command, const nlohmann::json &arguments, 
 {
    const auto *entry = findCommand(command);
    if (!entry)
-      return Error{ErrorCode::usage, fmt::format("there is no command \"{}\"; `diatom commands` lists them", command)};
+      return Error{ErrorCode::usage,
+                   fmt::format("there is no command \"{}\"; `diatom commands` lists them", command)};
    Design next = design();
    const auto view = hierarchy(); // commands that need no lattice work without one
    CommandContext context{next, m_catalogue, job, view ? *view : nullptr};
@@ -96,8 +98,9 @@ Status Document::replay(std::string_view log, const Job &job)
       if (!entry)
          return entry.error();
       if (!entry->is_object() || !entry->contains("command") || !(*entry)["command"].is_string())
-         return Error{ErrorCode::unreadable,
-                      fmt::format("{}: it must be an object with \"command\" and \"arguments\"; correct it", where)};
+         return Error{
+             ErrorCode::unreadable,
+             fmt::format("{}: it must be an object with \"command\" and \"arguments\"; correct it", where)};
       const auto arguments = entry->value("arguments", nlohmann::json::object());
       if (const auto done = run((*entry)["command"].get<std::string>(), arguments, job); !done)
          return Error{done.error().code, fmt::format("{}: {}", where, done.error().message)};

@@ -25,7 +25,8 @@ Error unreadable(const std::string &name, std::string_view why)
    return {ErrorCode::unreadable, fmt::format("{}: {}", name, why)};
 }
 
-Result<Opened> readDiatom(const nlohmann::json &json, const Entries &blocks, const std::string &name, const Job &job)
+Result<Opened> readDiatom(const nlohmann::json &json, const Entries &blocks, const std::string &name,
+                          const Job &job)
 {
    ReadLog log{name, {}, nlohmann::json::object()};
    const JsonPlace top(json, log);
@@ -33,14 +34,17 @@ Result<Opened> readDiatom(const nlohmann::json &json, const Entries &blocks, con
    if (log.error)
       return *log.error;
    if (version > kFormatVersion)
-      return unreadable(name, fmt::format("/diatom: it was written by a newer version of Diatom (format {}, this one reads up to "
-                                          "{}); update Diatom to open it",
-                                          version, kFormatVersion));
+      return unreadable(
+          name,
+          fmt::format("/diatom: it was written by a newer version of Diatom (format {}, this one reads up to "
+                      "{}); update Diatom to open it",
+                      version, kFormatVersion));
    Opened opened{readDesignJson(json, blocks, log, job), "diatom", {}};
    if (log.error)
       return *log.error;
    for (const auto &[pointer, value] : opened.design.unknown.items())
-      opened.notes.push_back(fmt::format("{} is unknown to this version; it is kept and saved again", pointer));
+      opened.notes.push_back(
+          fmt::format("{} is unknown to this version; it is kept and saved again", pointer));
    return opened;
 }
 
@@ -50,13 +54,17 @@ Result<Opened> readImported(const nlohmann::json &json, const std::string &name,
    const JsonPlace top(json, log);
    const auto assembly = top.at("assembly");
    if (top.has("lattice"))
-      return unreadable(name, "/lattice: files of DMDesign before May 2015 and of AMOEBA's rewrite of 2017 are not read; save "
-                              "the design again with the published version of that program");
+      return unreadable(
+          name,
+          "/lattice: files of DMDesign before May 2015 and of AMOEBA's rewrite of 2017 are not read; save "
+          "the design again with the published version of that program");
    const bool gik = assembly.has("connectionType") && assembly.json()["connectionType"] == "gik";
    const bool amoeba = top.has("emSim") || (assembly.has("cells") && !gik);
    if (!amoeba && !assembly.has("sparseCells") && !top.has("materials"))
-      return unreadable(name, "top level: it is JSON but no design (neither \"diatom\" nor \"assembly\" nor \"materials\"); name "
-                              "a .diatom document or a file of AMOEBA or DMDesign");
+      return unreadable(
+          name,
+          "top level: it is JSON but no design (neither \"diatom\" nor \"assembly\" nor \"materials\"); name "
+          "a .diatom document or a file of AMOEBA or DMDesign");
    Opened opened = amoeba ? importAmoeba(json, log, job) : importDmdesign(json, log, job);
    if (log.error)
       return *log.error;
@@ -70,15 +78,18 @@ Result<Opened> readImported(const nlohmann::json &json, const std::string &name,
 Result<Opened> readText(std::string_view text, const Entries &blocks, const std::string &name, const Job &job)
 {
    if (text.size() > kMostText)
-      return unreadable(name, fmt::format("it is larger than the {} bytes that readable designs may have; save it packed",
-                                          kMostText));
+      return unreadable(
+          name, fmt::format("it is larger than the {} bytes that readable designs may have; save it packed",
+                            kMostText));
    const auto start = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
    if (start == std::string_view::npos)
       return unreadable(name, "it is empty; name a .diatom document or a file of AMOEBA or DMDesign");
    if (text[start] != '{')
-      return unreadable(name, fmt::format("byte {}: it is no design: neither JSON nor a zip begins like this; name a .diatom "
-                                          "document or a file of AMOEBA or DMDesign",
-                                          start + 1));
+      return unreadable(
+          name,
+          fmt::format("byte {}: it is no design: neither JSON nor a zip begins like this; name a .diatom "
+                      "document or a file of AMOEBA or DMDesign",
+                      start + 1));
    auto json = parseJson(text, name);
    if (!json)
       return json.error();
@@ -114,12 +125,15 @@ Result<Opened> readDesign(std::string_view bytes, const std::string &name, const
          return entries.error();
       const auto document = entries->find(kDocumentEntry);
       if (document == entries->end())
-         return unreadable(name, fmt::format("the zip has no {}, so it is no design; name a .diatom document", kDocumentEntry));
+         return unreadable(name, fmt::format("the zip has no {}, so it is no design; name a .diatom document",
+                                             kDocumentEntry));
       return readText(document->second, *entries, name, job);
    } catch (const std::bad_alloc &) {
-      return unreadable(name, "there is not enough memory to open it; close other programs or use a larger machine");
+      return unreadable(
+          name, "there is not enough memory to open it; close other programs or use a larger machine");
    } catch (const nlohmann::json::exception &error) {
-      return unreadable(name, fmt::format("it cannot be used ({}); restore the file from a copy", error.what()));
+      return unreadable(name,
+                        fmt::format("it cannot be used ({}); restore the file from a copy", error.what()));
    }
 }
 
@@ -149,9 +163,11 @@ Result<std::string> writeDesign(const Design &design, bool packed, const Job &jo
       entries.emplace(kDocumentEntry, jsonText(*json));
       return writeArchive(entries);
    } catch (const std::bad_alloc &) {
-      return Error{ErrorCode::unwritable, "there is not enough memory to write the design; close other programs"};
+      return Error{ErrorCode::unwritable,
+                   "there is not enough memory to write the design; close other programs"};
    } catch (const nlohmann::json::exception &error) {
-      return Error{ErrorCode::invalid, fmt::format("the design cannot be written as JSON ({})", error.what())};
+      return Error{ErrorCode::invalid,
+                   fmt::format("the design cannot be written as JSON ({})", error.what())};
    }
 }
 

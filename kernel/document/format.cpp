@@ -14,12 +14,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// --- writing -------------------------------------------------------------------------------------------------------
+// --- writing
+// -------------------------------------------------------------------------------------------------------
 
 class Writer
 {
 public:
-   Writer(const Design &design, Entries *blocks, const Job &job) : m_design(design), m_blocks(blocks), m_job(job) {}
+   Writer(const Design &design, Entries *blocks, const Job &job)
+       : m_design(design), m_blocks(blocks), m_job(job)
+   {}
 
    Result<ordered_json> write()
    {
@@ -54,7 +57,8 @@ private:
       auto list = ordered_json::array();
       DefinitionId position = 0;
       for (const auto &[number, definition] : m_design.model.definitions) {
-         ordered_json json = {{"id", definition->id}, {"name", definition->name}, {"color", colorText(definition->color)}};
+         ordered_json json = {
+             {"id", definition->id}, {"name", definition->name}, {"color", colorText(definition->color)}};
          if (number != ++position)
             json["number"] = number; // after others were removed
          json.update(body(definition->body, fmt::format("cells/{}", number)));
@@ -115,7 +119,8 @@ private:
    std::optional<Error> m_error;
 };
 
-// --- reading -------------------------------------------------------------------------------------------------------
+// --- reading
+// -------------------------------------------------------------------------------------------------------
 
 class DesignReader
 {
@@ -126,7 +131,8 @@ public:
    {
       if (!top.object())
          return {};
-      top.known({"diatom", "name", "lattice", "materials", "definitions", "assembly", "simulation", "parts", "machine"});
+      top.known({"diatom", "name", "lattice", "materials", "definitions", "assembly", "simulation", "parts",
+                 "machine"});
       m_design.name = top.textOr("name", "");
       readLattice(top.at("lattice"));
       readMaterials(top.at("materials"));
@@ -190,7 +196,8 @@ private:
          definition->name = place.textOr("name", definition->id);
          if (place.has("color"))
             definition->color = place.at("color").color();
-         const auto number = place.has("number") ? place.at("number").integer(1, 0x7fffffff) : std::int64_t(i) + 1;
+         const auto number =
+             place.has("number") ? place.at("number").integer(1, 0x7fffffff) : std::int64_t(i) + 1;
          if (!m_definitions.emplace(definition->id, static_cast<DefinitionId>(number)).second)
             place.at("id").fail(fmt::format("there are two composites \"{}\"; rename one", definition->id));
          if (!m_design.model.definitions.emplace(static_cast<DefinitionId>(number), definition).second)
@@ -259,19 +266,21 @@ private:
       }
       auto cells = unpackCells(block->second, m_design.model.materials->size(), m_budget, m_job);
       if (!cells) {
-         place.fail(fmt::format("the packed cells \"{}\" cannot be read: {}; restore the file from a copy", name,
-                                cells.error().message));
+         place.fail(fmt::format("the packed cells \"{}\" cannot be read: {}; restore the file from a copy",
+                                name, cells.error().message));
          return {};
       }
       const auto counts = cells->countByMaterial();
       for (std::size_t m = 1; m < counts.size(); ++m)
          if (counts[m] > 0 && (*m_design.model.materials)[m - 1].id.empty())
-            place.fail(fmt::format("the packed cells \"{}\" use material {}, which was removed; restore the file from a copy",
-                                   name, m));
+            place.fail(fmt::format(
+                "the packed cells \"{}\" use material {}, which was removed; restore the file from a copy",
+                name, m));
       return std::move(cells.value());
    }
 
-   /// Takes away definitions whose own instances are all taken away, until none is left; what stays is in a circle.
+   /// Takes away definitions whose own instances are all taken away, until none is left; what stays is in a
+   /// circle.
    void refuseCycles(const JsonPlace &list)
    {
       std::map<DefinitionId, std::size_t> open;

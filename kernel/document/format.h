@@ -16,7 +16,8 @@ inline constexpr const char *kDocumentEntry = "document.json"; // of the zip for
 /// The document as JSON. With `blocks` cells are packed into it and the JSON names the entries.
 Result<nlohmann::ordered_json> designJson(const Design &design, Entries *blocks, const Job &job);
 
-/// The design a document says. Faults and unknown keys go to `log`; `blocks` are the other entries of the zip form.
+/// The design a document says. Faults and unknown keys go to `log`; `blocks` are the other entries of the zip
+/// form.
 Design readDesignJson(const nlohmann::json &document, const Entries &blocks, ReadLog &log, const Job &job);
 
 /// Parts shared with the commands, which take materials and set-ups in the same words.

@@ -59,7 +59,8 @@ Actuation readActuation(const JsonPlace &place)
       return actuation;
    place.known({"mode", "axis", "strain_per_V", "axis_from_wires"});
    if (place.has("mode"))
-      actuation.mode = static_cast<Actuation::Mode>(place.at("mode").word({"axial", "shear", "bending", "torsion"}));
+      actuation.mode =
+          static_cast<Actuation::Mode>(place.at("mode").word({"axial", "shear", "bending", "torsion"}));
    if (place.has("axis"))
       actuation.axis = static_cast<int>(place.at("axis").word({"x", "y", "z"}));
    actuation.strainPerVolt = place.numberOr("strain_per_V", 0, -10, 10);
@@ -107,8 +108,8 @@ Material readMaterial(const JsonPlace &place)
    Material material;
    if (!place.object())
       return material;
-   place.known({"id", "name", "color", "density_kg_m3", "youngs_modulus_Pa", "poisson_ratio", "damping_ratio", "role",
-                "bonds", "ports", "actuation"});
+   place.known({"id", "name", "color", "density_kg_m3", "youngs_modulus_Pa", "poisson_ratio", "damping_ratio",
+                "role", "bonds", "ports", "actuation"});
    material.id = place.at("id").identifier();
    material.name = place.textOr("name", material.id);
    if (place.has("color"))
@@ -121,8 +122,8 @@ Material readMaterial(const JsonPlace &place)
    if (place.has("bonds"))
       material.bonds = readBonds(place.at("bonds"));
    if (place.has("role"))
-      material.role =
-         static_cast<ElectricalRole>(place.at("role").word({"insulator", "conductor", "source", "actuator"}));
+      material.role = static_cast<ElectricalRole>(
+          place.at("role").word({"insulator", "conductor", "source", "actuator"}));
    if (place.has("ports"))
       material.ports = readPorts(place.at("ports"));
    if (place.has("actuation"))

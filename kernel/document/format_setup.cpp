@@ -31,8 +31,8 @@ void refuseTwice(const std::vector<Item> &items, const JsonPlace &place, const c
    std::set<Index> seen;
    for (const auto &item : items)
       if (!seen.insert(item.cell).second)
-         place.fail(fmt::format("cell [{}, {}, {}] has two {}; remove one of them", item.cell.x, item.cell.y, item.cell.z,
-                                what));
+         place.fail(fmt::format("cell [{}, {}, {}] has two {}; remove one of them", item.cell.x, item.cell.y,
+                                item.cell.z, what));
 }
 
 Support readSupport(const JsonPlace &place)
@@ -81,7 +81,8 @@ Source readSource(const JsonPlace &place)
    place.known({"cell", "waveform", "frequency_Hz", "phase", "duty", "inverted", "amplitude_V"});
    source.cell = place.at("cell").index();
    if (place.has("waveform"))
-      source.waveform = static_cast<Waveform>(place.at("waveform").word({"sine", "square", "saw", "triangle"}));
+      source.waveform =
+          static_cast<Waveform>(place.at("waveform").word({"sine", "square", "saw", "triangle"}));
    source.frequency = place.numberOr("frequency_Hz", source.frequency, 0, 1e9);
    source.phase = place.numberOr("phase", source.phase, 0, 1);
    source.duty = place.numberOr("duty", source.duty, 0, 1);
@@ -176,7 +177,8 @@ Setup readSetup(const JsonPlace &place)
    Setup setup;
    if (!place.object())
       return setup;
-   place.known({"gravity_m_s2", "supports", "loads", "sources", "ground", "drag_1_s", "step_s", "solver", "effects"});
+   place.known(
+       {"gravity_m_s2", "supports", "loads", "sources", "ground", "drag_1_s", "step_s", "solver", "effects"});
    if (place.has("gravity_m_s2"))
       setup.gravity = place.at("gravity_m_s2").numbers3();
    if (place.has("supports"))

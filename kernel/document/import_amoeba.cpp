@@ -24,19 +24,25 @@ struct Known
 };
 
 constexpr Known kKnown[] = {
-   {"fiberGlass", "insulating", "Structural", {0xfc, 0xef, 0xb5}, 3500, 500, ElectricalRole::insulator},
-   {"flexure", "flexure", "Flexure", {0xcd, 0xa4, 0xf3}, 3500, 30, ElectricalRole::insulator},
-   {"brass", "conductive", "Structural conductor", {0x85, 0x7b, 0x64}, 8500, 500, ElectricalRole::conductor},
-   {"flexureCond", "flexureCond", "Flexible conductor", {0xb4, 0xac, 0x9c}, 3500, 30, ElectricalRole::conductor},
-   {"piezo", "actuator", "Actuator", {0xff, 0xcc, 0x00}, 6500, 200, ElectricalRole::actuator},
-   {"signal", "signal", "Signal generator", {0x0e, 0xe3, 0xb8}, 6500, 200, ElectricalRole::source},
+    {"fiberGlass", "insulating", "Structural", {0xfc, 0xef, 0xb5}, 3500, 500, ElectricalRole::insulator},
+    {"flexure", "flexure", "Flexure", {0xcd, 0xa4, 0xf3}, 3500, 30, ElectricalRole::insulator},
+    {"brass", "conductive", "Structural conductor", {0x85, 0x7b, 0x64}, 8500, 500, ElectricalRole::conductor},
+    {"flexureCond",
+     "flexureCond",
+     "Flexible conductor",
+     {0xb4, 0xac, 0x9c},
+     3500,
+     30,
+     ElectricalRole::conductor},
+    {"piezo", "actuator", "Actuator", {0xff, 0xcc, 0x00}, 6500, 200, ElectricalRole::actuator},
+    {"signal", "signal", "Signal generator", {0x0e, 0xe3, 0xb8}, 6500, 200, ElectricalRole::source},
 };
 
-constexpr double kBondDamping = 0.01;   // N s/m, the program's one constant
-constexpr double kMostDamping = 2;      // as a ratio: beyond, motion only creeps
-constexpr double kStrainPerVolt = 0.6;  // the program strains each of an actuator's two bonds by 0.3 V
+constexpr double kBondDamping = 0.01;  // N s/m, the program's one constant
+constexpr double kMostDamping = 2;     // as a ratio: beyond, motion only creeps
+constexpr double kStrainPerVolt = 0.6; // the program strains each of an actuator's two bonds by 0.3 V
 constexpr double kFriction = 0.5;
-constexpr double kGroundDamping = 0.1;  // N s/m
+constexpr double kGroundDamping = 0.1; // N s/m
 
 class AmoebaImport
 {
@@ -63,10 +69,12 @@ private:
    {
       if (!assembly.object())
          return;
-      assembly.known({"cellsMin", "cellsMax", "numCells", "units", "scale", "cellType", "connectionType", "applicationType",
-                      "partType", "aspectRatio", "sparseCells", "cells"});
-      if (assembly.textOr("cellType", "cube") != "cube" || assembly.textOr("connectionType", "face") != "face")
-         assembly.fail("only face-connected cubes can be read from an AMOEBA file; set cellType to \"cube\" and connectionType "
+      assembly.known({"cellsMin", "cellsMax", "numCells", "units", "scale", "cellType", "connectionType",
+                      "applicationType", "partType", "aspectRatio", "sparseCells", "cells"});
+      if (assembly.textOr("cellType", "cube") != "cube" ||
+          assembly.textOr("connectionType", "face") != "face")
+         assembly.fail("only face-connected cubes can be read from an AMOEBA file; set cellType to \"cube\" "
+                       "and connectionType "
                        "to \"face\"");
       auto &lattice = m_opened.design.model.lattice;
       lattice.pitch = assembly.has("units") && assembly.at("units").word({"mm", "um"}) == 1 ? 1e-6 : 1e-3;
@@ -139,11 +147,13 @@ private:
       material.role = known.role;
       // zeta = d / (2 sqrt(k mu)) with the reduced mass of two equal cells.
       const double reduced = known.density * pitch * pitch * pitch / 2;
-      material.dampingRatio = std::min(kMostDamping, kBondDamping / (2 * std::sqrt(known.stiffness * reduced)));
+      material.dampingRatio =
+          std::min(kMostDamping, kBondDamping / (2 * std::sqrt(known.stiffness * reduced)));
       if (known.role == ElectricalRole::actuator)
          material.actuation = {Actuation::Mode::axial, 0, kStrainPerVolt, true};
       if (m_materials.empty())
-         note(fmt::format("materials: Young's modulus is bond stiffness over pitch, Poisson's ratio 0.3; damping ratios give the "
+         note(fmt::format("materials: Young's modulus is bond stiffness over pitch, Poisson's ratio 0.3; "
+                          "damping ratios give the "
                           "program's {} N s/m per bond (at most {})",
                           numberText(kBondDamping), numberText(kMostDamping)));
       return material;
@@ -153,7 +163,8 @@ private:
    {
       if (!sim.object())
          return;
-      sim.known({"gravity", "gravityVector", "dtSolver", "dtRender", "fixedIndices", "groundHeight", "friction", "lattice"});
+      sim.known({"gravity", "gravityVector", "dtSolver", "dtRender", "fixedIndices", "groundHeight",
+                 "friction", "lattice"});
       auto &setup = m_opened.design.setup;
       readGravity(sim);
       setup.step = sim.numberOr("dtSolver", 0, 0, 1e12) * 1e-6; // microseconds
@@ -161,8 +172,9 @@ private:
          note(fmt::format("the file asks for steps of {} s; set the step to 0 for the solver's stable step",
                           numberText(setup.step)));
       if (sim.has("dtRender"))
-         note(fmt::format("/emSim/dtRender ({}, steps per drawn frame) was left out: drawing follows the screen",
-                          numberText(sim.at("dtRender").number())));
+         note(fmt::format(
+             "/emSim/dtRender ({}, steps per drawn frame) was left out: drawing follows the screen",
+             numberText(sim.at("dtRender").number())));
       readGround(sim);
       if (sim.has("fixedIndices"))
          readFixedCells(sim.at("fixedIndices"));
@@ -181,10 +193,11 @@ private:
       std::array<double, 3> direction{0, 0, -1};
       if (sim.has("gravityVector")) {
          const auto vector = sim.at("gravityVector");
-         direction = {vector.at("x").number(-1e9, 1e9), vector.at("y").number(-1e9, 1e9), vector.at("z").number(-1e9, 1e9)};
+         direction = {vector.at("x").number(-1e9, 1e9), vector.at("y").number(-1e9, 1e9),
+                      vector.at("z").number(-1e9, 1e9)};
       }
       const double length =
-         std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
+          std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] + direction[2] * direction[2]);
       for (std::size_t a = 0; a < 3 && length > 0; ++a)
          m_opened.design.setup.gravity[a] = direction[a] == 0 ? 0 : size * direction[a] / length;
    }
@@ -194,13 +207,15 @@ private:
       const double pitch = m_opened.design.model.lattice.pitch;
       auto &ground = m_opened.design.setup.ground;
       ground.present = true; // the program always had one
-      ground.height = (sim.numberOr("groundHeight", 0, -1e9, 1e9) - 0.5) * pitch; // it meant centres, half a cell higher
-      ground.stiffness = 1 / pitch;                                               // 1 N per cell of penetration
+      ground.height =
+          (sim.numberOr("groundHeight", 0, -1e9, 1e9) - 0.5) * pitch; // it meant centres, half a cell higher
+      ground.stiffness = 1 / pitch;                                   // 1 N per cell of penetration
       ground.damping = kGroundDamping;
       ground.friction = sim.booleanOr("friction", false) ? kFriction : 0;
       if (ground.friction > 0)
-         note(fmt::format("friction with the ground is Coulomb's with coefficient {} (the program's 10 was not physical)",
-                          numberText(kFriction)));
+         note(fmt::format(
+             "friction with the ground is Coulomb's with coefficient {} (the program's 10 was not physical)",
+             numberText(kFriction)));
    }
 
    void readFixedCells(const JsonPlace &list)
@@ -225,7 +240,7 @@ private:
          source.cell = readXyz(signal.at("index"));
          if (signal.has("waveformType"))
             source.waveform =
-               static_cast<Waveform>(signal.at("waveformType").word({"sine", "square", "saw", "triangle"}));
+                static_cast<Waveform>(signal.at("waveformType").word({"sine", "square", "saw", "triangle"}));
          source.frequency = signal.numberOr("frequency", source.frequency, 0, 1e9);
          source.phase = signal.numberOr("phase", 0, 0, 1);
          source.duty = signal.numberOr("pwm", source.duty, 0, 1);

@@ -20,29 +20,31 @@ struct LatticeName
 };
 
 constexpr LatticeName kLattices[] = {
-   {"cube", "face", "cube"},
-   {"cube", "gik", "gik"},
-   {"octa", "face", "octahedron_face"},
-   {"octa", "edgeRot", "octahedron_edge"},
-   {"octa", "vertex", "octahedron_vertex"},
-   {"tetra", "stacked", "tetrahedron_stacked"},
-   {"truncatedCube", "face", "cuboctahedron"},
-   {"kelvin", "face", "kelvin"},
-   {"hex", "face", "honeycomb"},
-   {"hex", "faceRot", "honeycomb_rotated"},
+    {"cube", "face", "cube"},
+    {"cube", "gik", "gik"},
+    {"octa", "face", "octahedron_face"},
+    {"octa", "edgeRot", "octahedron_edge"},
+    {"octa", "vertex", "octahedron_vertex"},
+    {"tetra", "stacked", "tetrahedron_stacked"},
+    {"truncatedCube", "face", "cuboctahedron"},
+    {"kelvin", "face", "kelvin"},
+    {"hex", "face", "honeycomb"},
+    {"hex", "faceRot", "honeycomb_rotated"},
 };
 
 /// Height of a GIK cell over its width, by application.
-constexpr std::pair<const char *, double> kHeights[] = {{"willGik", 1.28}, {"lego", 1.17}, {"dnaBricks", 1.08}};
+constexpr std::pair<const char *, double> kHeights[] = {
+    {"willGik", 1.28}, {"lego", 1.17}, {"dnaBricks", 1.08}};
 
-constexpr std::pair<const char *, double> kUnits[] = {{"inches", 0.0254}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
+constexpr std::pair<const char *, double> kUnits[] = {
+    {"inches", 0.0254}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
 
 constexpr int kLongestBrick = 100'000;
 
-/// A composite is kept in up to two versions: as drawn, for even heights, and turned, for odd ones. The program turned a
-/// composite at an odd height by -90 degrees about z, so that its bricks follow the layers they come to lie in. Here the
-/// turned version is a definition of its own, one layer higher inside and placed one layer lower, so that every
-/// placement is upright and at an even height.
+/// A composite is kept in up to two versions: as drawn, for even heights, and turned, for odd ones. The
+/// program turned a composite at an odd height by -90 degrees about z, so that its bricks follow the layers
+/// they come to lie in. Here the turned version is a definition of its own, one layer higher inside and
+/// placed one layer lower, so that every placement is upright and at an even height.
 struct Composite
 {
    DefinitionId even = 0, odd = 0;
@@ -81,16 +83,19 @@ private:
    {
       if (!assembly.object())
          return;
-      assembly.known({"cellsMin", "cellsMax", "numCells", "units", "scale", "cellType", "connectionType", "applicationType",
-                      "latticeType", "partType", "aspectRatio", "denseCellsMin", "overlapDetected", "cellSeparation",
-                      "sparseCells"});
-      const auto cell = assembly.textOr("cellType", "cube"), connection = assembly.textOr("connectionType", "face");
-      const auto *found = std::find_if(std::begin(kLattices), std::end(kLattices), [&](const LatticeName &name) {
-         return cell == name.cell && connection == name.connection;
-      });
+      assembly.known({"cellsMin", "cellsMax", "numCells", "units", "scale", "cellType", "connectionType",
+                      "applicationType", "latticeType", "partType", "aspectRatio", "denseCellsMin",
+                      "overlapDetected", "cellSeparation", "sparseCells"});
+      const auto cell = assembly.textOr("cellType", "cube"),
+                 connection = assembly.textOr("connectionType", "face");
+      const auto *found =
+          std::find_if(std::begin(kLattices), std::end(kLattices), [&](const LatticeName &name) {
+             return cell == name.cell && connection == name.connection;
+          });
       if (found == std::end(kLattices)) {
-         assembly.fail(fmt::format("there is no lattice of cellType \"{}\" with connectionType \"{}\"; correct them", cell,
-                                   connection));
+         assembly.fail(
+             fmt::format("there is no lattice of cellType \"{}\" with connectionType \"{}\"; correct them",
+                         cell, connection));
          return;
       }
       m_gik = connection == "gik";
@@ -137,7 +142,8 @@ private:
          addMaterial(id, std::move(material));
       }
       if (!m_materials.empty())
-         note("materials: the file has no mechanical properties; density 1000 kg/m3 and Young's modulus 1 MPa stand in for them");
+         note("materials: the file has no mechanical properties; density 1000 kg/m3 and Young's modulus 1 "
+              "MPa stand in for them");
    }
 
    MaterialIndex addMaterial(const std::string &id, Material material)
@@ -160,14 +166,17 @@ private:
          return made;
       const auto place = m_definitions->at(id);
       if (!m_open.insert({id, odd}).second || m_open.size() > kMostLevels) {
-         fault(id, m_open.size() > kMostLevels ? "nests too deep; flatten it" : "contains itself; take it out of its own cells");
+         fault(id, m_open.size() > kMostLevels ? "nests too deep; flatten it"
+                                               : "contains itself; take it out of its own cells");
          return 0;
       }
       Definition definition;
-      definition.id = (isIdentifier(id) ? id : fmt::format("composite{}", model().definitions.size() + 1)) + (odd ? "_odd" : "");
+      definition.id = (isIdentifier(id) ? id : fmt::format("composite{}", model().definitions.size() + 1)) +
+                      (odd ? "_odd" : "");
       if (!odd) {
-         place.known({"name", "color", "altColor", "id", "noDelete", "properties", "sparseCells", "cellsMin", "cellsMax",
-                      "dimensions", "origin", "numCells", "elementaryChildren", "compositeChildren", "isComposite"});
+         place.known({"name", "color", "altColor", "id", "noDelete", "properties", "sparseCells", "cellsMin",
+                      "cellsMax", "dimensions", "origin", "numCells", "elementaryChildren",
+                      "compositeChildren", "isComposite"});
       }
       definition.name = place.textOr("name", id) + (odd ? " (turned)" : "");
       if (place.has("altColor") || place.has("color"))
@@ -188,7 +197,8 @@ private:
    void fault(const std::string &id, std::string_view problem)
    {
       if (!m_log.error)
-         m_log.error = Error{ErrorCode::unreadable, fmt::format("{}: /materials/{}: {}", m_log.name, id, problem)};
+         m_log.error =
+             Error{ErrorCode::unreadable, fmt::format("{}: /materials/{}: {}", m_log.name, id, problem)};
    }
 
    void readBody(const JsonPlace &place, Body &body, const std::string &owner, bool odd)
@@ -224,15 +234,18 @@ private:
          Material material;
          material.id = isIdentifier(id) ? id : fmt::format("material{}", m_materials.size() + 1);
          material.name = id;
-         note(fmt::format("material \"{}\" is not defined in the file; it was added with standard properties", id));
+         note(fmt::format("material \"{}\" is not defined in the file; it was added with standard properties",
+                          id));
          addMaterial(id, std::move(material));
          found = m_materials.find(id);
          if (found == m_materials.end())
             return;
       }
-      const auto length =
-         element.has("length") ? static_cast<std::int32_t>(element.at("length").integer(1, kLongestBrick)) : 1;
-      // Deployed rule: along y in even layers, along x in odd ones; turned by -90 degrees an x brick runs towards -y.
+      const auto length = element.has("length")
+                              ? static_cast<std::int32_t>(element.at("length").integer(1, kLongestBrick))
+                              : 1;
+      // Deployed rule: along y in even layers, along x in odd ones; turned by -90 degrees an x brick runs
+      // towards -y.
       const Index along = floorMod(i.z, 2) == 0 ? Index{0, 1, 0} : Index{1, 0, 0};
       Index first = odd ? turned(i) + Index{0, 0, 1} : i;
       Index step = odd ? turned(along) : along;
@@ -242,7 +255,8 @@ private:
       }
       for (std::int32_t k = 0; k < length && element.ok(); ++k) {
          const Index at = first + step * k;
-         const auto joins = m_gik ? (k > 0 ? Cell::kJoinsPrevious : 0) | (k + 1 < length ? Cell::kJoinsNext : 0) : 0;
+         const auto joins =
+             m_gik ? (k > 0 ? Cell::kJoinsPrevious : 0) | (k + 1 < length ? Cell::kJoinsNext : 0) : 0;
          if (!inRange(at) || !m_budget.take({at, at}))
             element.fail("the brick lies outside what a document may hold; make it shorter");
          else if (!body.cells.at(at).empty())
@@ -269,7 +283,7 @@ private:
    bool m_gik = false;
    const JsonPlace *m_definitions = nullptr; // /materials
    std::set<std::string> m_places;           // ids of composites
-   MaterialNames m_materials;                              // by the file's id
+   MaterialNames m_materials;                // by the file's id
    std::map<std::string, Composite> m_composites;
    std::set<std::pair<std::string, bool>> m_open; // being defined
    CellBudget m_budget;

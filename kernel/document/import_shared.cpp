@@ -6,7 +6,8 @@
 
 namespace diatom {
 
-void visitDense(const JsonPlace &array, Index origin, const std::function<void(Index, const JsonPlace &)> &visit)
+void visitDense(const JsonPlace &array, Index origin,
+                const std::function<void(Index, const JsonPlace &)> &visit)
 {
    const auto nx = array.size();
    for (std::size_t x = 0; x < nx && array.ok(); ++x) {
@@ -53,7 +54,8 @@ void noteUnknown(Opened &opened, const ReadLog &log)
       opened.notes.push_back(fmt::format("{} ({}) has no meaning here and was left out", pointer, text));
    }
    if (log.unknown.size() > kMostNotes)
-      opened.notes.push_back(fmt::format("{} more keys have no meaning here and were left out", log.unknown.size() - kMostNotes));
+      opened.notes.push_back(fmt::format("{} more keys have no meaning here and were left out",
+                                         log.unknown.size() - kMostNotes));
 }
 
 } // namespace diatom

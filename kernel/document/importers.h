@@ -15,8 +15,10 @@ Opened importAmoeba(const nlohmann::json &file, ReadLog &log, const Job &job);
 /// DMDesign assemblies and composites: {"assembly", "materials"} or {"materials"} alone.
 Opened importDmdesign(const nlohmann::json &file, ReadLog &log, const Job &job);
 
-/// Dense [x][y][z] arrays with an origin, as both programs write them: calls visit(index, element) for what is not null.
-void visitDense(const JsonPlace &array, Index origin, const std::function<void(Index, const JsonPlace &)> &visit);
+/// Dense [x][y][z] arrays with an origin, as both programs write them: calls visit(index, element) for what
+/// is not null.
+void visitDense(const JsonPlace &array, Index origin,
+                const std::function<void(Index, const JsonPlace &)> &visit);
 
 /// {"x": 1, "y": 2, "z": 3}.
 Index readXyz(const JsonPlace &place);

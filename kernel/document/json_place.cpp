@@ -58,17 +58,17 @@ void JsonPlace::fail(std::string_view problem) const
 {
    if (!m_log->error) {
       const auto place = pointer();
-      m_log->error = Error{ErrorCode::unreadable,
-                           fmt::format("{}: {}: {}", m_log->name, place.empty() ? "top level" : place, problem)};
+      m_log->error = Error{ErrorCode::unreadable, fmt::format("{}: {}: {}", m_log->name,
+                                                              place.empty() ? "top level" : place, problem)};
    }
 }
 
 void JsonPlace::mustBe(std::string_view what) const
 {
-   fail(m_value->is_null() ? fmt::format("is missing: it must be {}", what)
-                           : fmt::format("must be {}, not {}", what,
-                                         m_value->is_structured() ? m_value->type_name()
-                                                                  : shortText(*m_value)));
+   fail(m_value->is_null()
+            ? fmt::format("is missing: it must be {}", what)
+            : fmt::format("must be {}, not {}", what,
+                          m_value->is_structured() ? m_value->type_name() : shortText(*m_value)));
 }
 
 bool JsonPlace::has(std::string_view key) const
@@ -128,7 +128,8 @@ void JsonPlace::known(std::initializer_list<std::string_view> keys) const
 
 double JsonPlace::number(double least, double most) const
 {
-   const bool any = most >= std::numeric_limits<double>::max() && least <= -std::numeric_limits<double>::max();
+   const bool any =
+       most >= std::numeric_limits<double>::max() && least <= -std::numeric_limits<double>::max();
    const double value = m_value->is_number() ? m_value->get<double>() : std::nan("");
    if (value >= least && value <= most)
       return value;
@@ -145,7 +146,8 @@ std::int64_t JsonPlace::integer(std::int64_t least, std::int64_t most) const
 {
    // Beyond 2^53 neither we nor other programs that read JSON tell integers apart.
    const double value = m_value->is_number() ? m_value->get<double>() : std::nan("");
-   if (value >= static_cast<double>(least) && value <= static_cast<double>(most) && value == std::floor(value))
+   if (value >= static_cast<double>(least) && value <= static_cast<double>(most) &&
+       value == std::floor(value))
       return static_cast<std::int64_t>(value);
    mustBe(fmt::format("a whole number from {} to {}", least, most));
    return least;
@@ -250,8 +252,8 @@ bool JsonPlace::booleanOr(std::string_view key, bool fallback) const
 bool isIdentifier(std::string_view text)
 {
    const auto good = [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
-             c == '-';
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+             c == '.' || c == '-';
    };
    return !text.empty() && text.size() <= 200 && std::all_of(text.begin(), text.end(), good);
 }

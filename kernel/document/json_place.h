@@ -1,4 +1,5 @@
-// Reading checked JSON with its place at hand: every getter knows its JSON pointer, and the first fault is kept.
+// Reading checked JSON with its place at hand: every getter knows its JSON pointer, and the first fault is
+// kept.
 #pragma once
 
 #include "core/index.h"
@@ -29,8 +30,9 @@ struct ReadLog
    bool ok() const { return !error; }
 };
 
-/// A value and the way to it. Lives on the stack of the reading function; the parent must outlive it. Getters return
-/// a harmless default after a fault, so that readers need to look at ReadLog::ok() in loops and at the end only.
+/// A value and the way to it. Lives on the stack of the reading function; the parent must outlive it. Getters
+/// return a harmless default after a fault, so that readers need to look at ReadLog::ok() in loops and at the
+/// end only.
 class JsonPlace
 {
 public:
@@ -62,7 +64,7 @@ public:
    std::string text() const;
    std::string identifier() const; // [A-Za-z0-9_.-]+
    std::array<std::uint8_t, 3> color() const;
-   Index index() const;            // [x, y, z]
+   Index index() const; // [x, y, z]
    std::array<double, 3> numbers3() const;
    Values values() const;
    /// Position of the text in `words`; fails naming them all.
@@ -75,9 +77,8 @@ public:
 
 private:
    JsonPlace(const nlohmann::json &value, const JsonPlace &parent, std::string_view key, std::size_t element)
-      : m_value(&value), m_log(parent.m_log), m_parent(&parent), m_key(key), m_element(element)
-   {
-   }
+       : m_value(&value), m_log(parent.m_log), m_parent(&parent), m_key(key), m_element(element)
+   {}
 
    const nlohmann::json *m_value;
    ReadLog *m_log;

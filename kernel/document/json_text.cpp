@@ -56,8 +56,9 @@ bool appendLine(std::string &out, const ordered_json &value, std::size_t limit)
 void appendIndented(std::string &out, const ordered_json &value, std::size_t depth)
 {
    std::string line;
-   if (appendLine(line, value, kLineWidth > 2 * depth ? kLineWidth - 2 * depth : 0) || !value.is_structured() ||
-       value.empty()) {
+   if (appendLine(line, value, kLineWidth > 2 * depth ? kLineWidth - 2 * depth : 0) ||
+       !value.is_structured() || value.empty())
+   {
       out += line;
       return;
    }
@@ -135,18 +136,20 @@ Result<nlohmann::json> parseJson(std::string_view text, const std::string &name)
    if (text.starts_with("\xef\xbb\xbf"))
       text.remove_prefix(3);
    if (const auto byte = tooDeep(text); byte != std::string_view::npos)
-      return Error{ErrorCode::unreadable, fmt::format("{}: byte {}: brackets nest deeper than {} levels, which no "
-                                                      "design needs; the file is damaged or not a design",
-                                                      name, byte + 1, kJsonDepth)};
+      return Error{ErrorCode::unreadable,
+                   fmt::format("{}: byte {}: brackets nest deeper than {} levels, which no "
+                               "design needs; the file is damaged or not a design",
+                               name, byte + 1, kJsonDepth)};
    try {
       return nlohmann::json::parse(text);
    } catch (const nlohmann::json::parse_error &error) {
       return Error{ErrorCode::unreadable,
-                   fmt::format("{}: byte {}: it is not complete JSON ({}); restore the file from a copy", name,
-                               error.byte, reason(error))};
+                   fmt::format("{}: byte {}: it is not complete JSON ({}); restore the file from a copy",
+                               name, error.byte, reason(error))};
    } catch (const std::exception &error) {
-      return Error{ErrorCode::unreadable,
-                   fmt::format("{}: it cannot be used as JSON ({}); correct that value", name, reason(error))};
+      return Error{
+          ErrorCode::unreadable,
+          fmt::format("{}: it cannot be used as JSON ({}); correct that value", name, reason(error))};
    }
 }
 

@@ -1,4 +1,5 @@
-// The command table and the edited document: what each command does, refuses and undoes; replay gives the same hash.
+// The command table and the edited document: what each command does, refuses and undoes; replay gives the
+// same hash.
 #include "core/file.h"
 #include "document/document.h"
 #include "document/files.h"
@@ -71,7 +72,9 @@ std::pair<std::string, json> randomCommand(std::mt19937 &random)
       return {"define-composite", {{"id", "u" + std::to_string(random() % 4)}, {"box", box()}}};
    case 10:
       return {"place-composite",
-              {{"definition", "u" + std::to_string(random() % 4)}, {"cell", index()}, {"rotation", random() % 2 ? random() % 8 : 0}}};
+              {{"definition", "u" + std::to_string(random() % 4)},
+               {"cell", index()},
+               {"rotation", random() % 2 ? random() % 8 : 0}}};
    case 11:
       return {"dissolve", {{"cell", index()}}};
    case 12:
@@ -166,13 +169,21 @@ private slots:
          DO("define-composite", R"({"id": "u", "box": [[0,0,0],[4,1,1]]})");
          int placed = 0;
          for (int rotation = 0; rotation < 48; ++rotation) {
-            if (!d.run("place-composite", {{"definition", "u"}, {"cell", {40, 0, 0}}, {"rotation", rotation}}, Job()).ok())
+            if (!d.run("place-composite", {{"definition", "u"}, {"cell", {40, 0, 0}}, {"rotation", rotation}},
+                       Job())
+                     .ok())
                continue;
             ++placed;
             std::map<Index, Cell> shown, kept;
-            (*d.hierarchy())->visit({{20, -40, -40}, {60, 40, 40}}, [&](Index i, Cell c) { shown[i] = c; return true; });
+            (*d.hierarchy())->visit({{20, -40, -40}, {60, 40, 40}}, [&](Index i, Cell c) {
+               shown[i] = c;
+               return true;
+            });
             DO("dissolve", R"({"cell": [40,0,0]})");
-            (*d.hierarchy())->visit({{20, -40, -40}, {60, 40, 40}}, [&](Index i, Cell c) { kept[i] = c; return true; });
+            (*d.hierarchy())->visit({{20, -40, -40}, {60, 40, 40}}, [&](Index i, Cell c) {
+               kept[i] = c;
+               return true;
+            });
             QCOMPARE(shown.size(), std::size_t(20));
             QCOMPARE(kept.size(), shown.size());
             for (const auto &[index, cell] : kept) {
@@ -296,7 +307,9 @@ private slots:
    void aBrokenLogNamesItsLine()
    {
       auto d = start();
-      const auto status = d.replay("# remark\n{\"command\": \"set-name\", \"arguments\": {\"name\": \"n\"}}\n{\"command\": \"fly\"}\n", Job());
+      const auto status = d.replay(
+          "# remark\n{\"command\": \"set-name\", \"arguments\": {\"name\": \"n\"}}\n{\"command\": \"fly\"}\n",
+          Job());
       QVERIFY(!status.ok());
       QVERIFY2(status.error().message.find("line 3") == 0, status.error().message.c_str());
    }
@@ -304,8 +317,10 @@ private slots:
    void everyCommandRefusesWrongArgumentsWithASentence()
    {
       for (const auto &command : commands())
-         for (const char *arguments : {"null", "[]", "7", R"({"cell": "x", "box": 1, "id": [], "material": {}, "to": null})",
-                                       R"({"nonsense": 1})"}) {
+         for (const char *arguments :
+              {"null", "[]", "7", R"({"cell": "x", "box": 1, "id": [], "material": {}, "to": null})",
+               R"({"nonsense": 1})"})
+         {
             auto d = start();
             const auto before = d.design().hash();
             const auto message = run(d, command.id, arguments);

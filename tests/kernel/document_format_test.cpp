@@ -1,4 +1,5 @@
-// .diatom documents: exact round trips, the same bytes for the same design, and one sentence for every bad file.
+// .diatom documents: exact round trips, the same bytes for the same design, and one sentence for every bad
+// file.
 #include "document/files.h"
 #include "document/json_text.h"
 #include "tests/support/support.h"
@@ -26,7 +27,10 @@ Design everything()
 {
    Design d;
    d.name = "all \"of\" it, \xc3\xa9";
-   d.model.lattice = {"org.example.lattice.unheard_of", {{"height", 1.28}, {"kind", std::string("tall")}}, 2.5e-4, {1, 2, 0.1}};
+   d.model.lattice = {"org.example.lattice.unheard_of",
+                      {{"height", 1.28}, {"kind", std::string("tall")}},
+                      2.5e-4,
+                      {1, 2, 0.1}};
    auto a = material("structural"), b = material("brass", ElectricalRole::conductor), gone = material("gone"),
         c = material("act", ElectricalRole::actuator);
    a.color = {1, 0xab, 0xff};
@@ -34,7 +38,8 @@ Design everything()
    a.youngsModulus = 6.9e10;
    a.poissonRatio = -0.25;
    a.dampingRatio = 0.17;
-   a.bonds = BondConstants{{1, 2, 3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-6, 2e-6, 3e-6}, {4e-6, 5e-6, 6e-6}};
+   a.bonds =
+       BondConstants{{1, 2, 3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-6, 2e-6, 3e-6}, {4e-6, 5e-6, 6e-6}};
    b.ports = 0x30;
    c.actuation = {Actuation::Mode::shear, 2, 0.6, true};
    for (auto &m : {a, gone, b, c})
@@ -205,17 +210,29 @@ private slots:
       row("other json", R"({"a": 1})", "no design");
       row("wrong type", small(R"(, "simulation": {"drag_1_s": "fast"})"), "/simulation/drag_1_s");
       row("not finite", small(R"(, "simulation": {"drag_1_s": 1e999})"), "1e999");
-      row("negative density", R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a","density_kg_m3":-1}]})", "/materials/0/density_kg_m3");
-      row("two materials", R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a"},{"id":"a"}]})", "two materials");
+      row("negative density",
+          R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a","density_kg_m3":-1}]})",
+          "/materials/0/density_kg_m3");
+      row("two materials", R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a"},{"id":"a"}]})",
+          "two materials");
       row("unknown material", small(R"(, "assembly": {"cells": [["c", [0,0,0]]]})"), "/assembly/cells/0/0");
-      row("cell twice", small(R"(, "assembly": {"cells": [["a", [0,0,0], [2,2,2]], ["b", [1,1,1]]]})"), "[1, 1, 1] is given twice");
-      row("out of range", small(R"(, "assembly": {"cells": [["a", [4000000000,0,0]]]})"), "/assembly/cells/0/1/0");
+      row("cell twice", small(R"(, "assembly": {"cells": [["a", [0,0,0], [2,2,2]], ["b", [1,1,1]]]})"),
+          "[1, 1, 1] is given twice");
+      row("out of range", small(R"(, "assembly": {"cells": [["a", [4000000000,0,0]]]})"),
+          "/assembly/cells/0/1/0");
       row("not whole", small(R"(, "assembly": {"cells": [["a", [0.5,0,0]]]})"), "whole number");
-      row("enormous", small(R"(, "assembly": {"cells": [["a", [0,0,0], [1000000000, 1000000000, 1]]]})"), "bricks");
-      row("unknown composite", small(R"(, "assembly": {"instances": [["u", [0,0,0]]]})"), "no composite \"u\"");
-      row("itself", small(R"(, "definitions": [{"id":"u","instances":[["v",[0,0,0]]]},{"id":"v","instances":[["u",[0,0,0]]]}])"), "contains itself");
-      row("support twice", small(R"(, "simulation": {"supports": [{"cell":[0,0,0]},{"cell":[0,0,0]}]})"), "two supports");
-      row("packed elsewhere", small(R"(, "assembly": {"cells": {"packed": "cells/assembly"}})"), "not in the file");
+      row("enormous", small(R"(, "assembly": {"cells": [["a", [0,0,0], [1000000000, 1000000000, 1]]]})"),
+          "bricks");
+      row("unknown composite", small(R"(, "assembly": {"instances": [["u", [0,0,0]]]})"),
+          "no composite \"u\"");
+      row("itself",
+          small(
+              R"(, "definitions": [{"id":"u","instances":[["v",[0,0,0]]]},{"id":"v","instances":[["u",[0,0,0]]]}])"),
+          "contains itself");
+      row("support twice", small(R"(, "simulation": {"supports": [{"cell":[0,0,0]},{"cell":[0,0,0]}]})"),
+          "two supports");
+      row("packed elsewhere", small(R"(, "assembly": {"cells": {"packed": "cells/assembly"}})"),
+          "not in the file");
       auto packed = *writeDesign(everything(), true, Job());
       row("cut zip", packed.substr(0, packed.size() / 2), "cut short or damaged");
       row("zip of something else", *writeArchive({{"a.txt", "hello"}}), "document.json");
@@ -239,7 +256,8 @@ private slots:
    {
       const std::string head = R"({"diatom": 1, "lattice": {"id": "l"}, "materials": [{"id": "a"}],
                                    "assembly": {"cells": {"packed": "c"}}})";
-      for (const std::string &cells : {std::string(), std::string("DIATCEL2"), std::string("DIATCEL1garbage")}) {
+      for (const std::string &cells :
+           {std::string(), std::string("DIATCEL2"), std::string("DIATCEL1garbage")}) {
          const auto opened = read(*writeArchive({{"document.json", head}, {"c", cells}}));
          QVERIFY(!opened.ok());
          QVERIFY(opened.error().message.find("/assembly/cells: the packed cells") != std::string::npos);
@@ -294,7 +312,8 @@ private slots:
       if (!folder)
          QSKIP("set DIATOM_WRITE_FIXTURES to a folder to write fixtures of the present version there");
       for (const bool packed : {false, true}) {
-         const auto file = std::filesystem::path(folder) / (packed ? "everything_packed.diatom" : "everything.diatom");
+         const auto file =
+             std::filesystem::path(folder) / (packed ? "everything_packed.diatom" : "everything.diatom");
          DIATOM_VERIFY_OK(writeFileAtomic(file, *writeDesign(everything(), packed, Job())));
          DIATOM_VERIFY_OK(writeFileAtomic(file.string() + ".hash", everything().hash().text() + "\n"));
       }

@@ -1,4 +1,5 @@
-// Files of the earlier programs: counts, bounds and set-ups of their published demos, and small files made here.
+// Files of the earlier programs: counts, bounds and set-ups of their published demos, and small files made
+// here.
 #include "document/files.h"
 #include "tests/support/support.h"
 
@@ -24,8 +25,8 @@ std::uint64_t countOf(const Model &model, const CellArray &cells, const std::str
    return m != 0 && m < counts.size() ? counts[m] : 0;
 }
 
-/// Bricks (runs) and cells of a definition with all it contains; placements of the importer are unturned, so this
-/// expansion is a plain shift. Overlaps show as a smaller count.
+/// Bricks (runs) and cells of a definition with all it contains; placements of the importer are unturned, so
+/// this expansion is a plain shift. Overlaps show as a smaller count.
 struct Expanded
 {
    std::map<Index, Cell> cells;
@@ -50,7 +51,8 @@ void expand(const Model &model, DefinitionId id, Index at, Expanded &out)
 
 Result<Opened> amoeba(const std::string &assembly, const std::string &sim)
 {
-   return readDesign(R"({"assembly": {)" + assembly + R"(}, "materials": {}, "emSim": {)" + sim + "}}", "demo.json", Job());
+   return readDesign(R"({"assembly": {)" + assembly + R"(}, "materials": {}, "emSim": {)" + sim + "}}",
+                     "demo.json", Job());
 }
 
 } // namespace
@@ -65,16 +67,34 @@ private slots:
    {
       DIATOM_NEEDS_SHARED();
       const Demo demos[] = {
-         {"BeamBending", {{-14, 0, 0}, {-3, 13, 1}}, {{"fiberGlass", 70}, {"flexure", 70}}, 10, 0, -19},
-         {"Bendy", {{-17, -3, 0}, {-4, 3, 4}},
-          {{"flexureCond", 114}, {"piezo", 12}, {"flexure", 6}, {"brass", 2}, {"fiberGlass", 2}, {"signal", 2}}, 0, 2, 0},
-         {"Gripper", {{-11, -1, 0}, {-5, 35, 2}},
-          {{"fiberGlass", 363}, {"flexureCond", 40}, {"brass", 20}, {"piezo", 6}, {"signal", 6}}, 0, 6, 0},
-         {"Locomotion", {{-53, 6, 0}, {-12, 9, 2}},
-          {{"brass", 48}, {"flexureCond", 16}, {"piezo", 4}, {"signal", 4}}, 0, 4, 0},
+          {"BeamBending", {{-14, 0, 0}, {-3, 13, 1}}, {{"fiberGlass", 70}, {"flexure", 70}}, 10, 0, -19},
+          {"Bendy",
+           {{-17, -3, 0}, {-4, 3, 4}},
+           {{"flexureCond", 114},
+            {"piezo", 12},
+            {"flexure", 6},
+            {"brass", 2},
+            {"fiberGlass", 2},
+            {"signal", 2}},
+           0,
+           2,
+           0},
+          {"Gripper",
+           {{-11, -1, 0}, {-5, 35, 2}},
+           {{"fiberGlass", 363}, {"flexureCond", 40}, {"brass", 20}, {"piezo", 6}, {"signal", 6}},
+           0,
+           6,
+           0},
+          {"Locomotion",
+           {{-53, 6, 0}, {-12, 9, 2}},
+           {{"brass", 48}, {"flexureCond", 16}, {"piezo", 4}, {"signal", 4}},
+           0,
+           4,
+           0},
       };
       for (const auto &demo : demos) {
-         const auto opened = openDesign(test::sharedDir() / "data/amoeba" / (std::string(demo.file) + ".json"), Job());
+         const auto opened =
+             openDesign(test::sharedDir() / "data/amoeba" / (std::string(demo.file) + ".json"), Job());
          DIATOM_VERIFY_OK(opened);
          QCOMPARE(opened->format, std::string("amoeba"));
          const auto &model = opened->design.model;
@@ -150,8 +170,9 @@ private slots:
 
    void whatHasNoMeaningIsReported()
    {
-      const auto opened = amoeba(R"("colour": "red", "numCells": 9, "sparseCells": [[[{"materialID": "mystery"}]]])",
-                                 R"("fixedIndices": [{"x": 5, "y": 5, "z": 5}], "dtRender": 100)");
+      const auto opened =
+          amoeba(R"("colour": "red", "numCells": 9, "sparseCells": [[[{"materialID": "mystery"}]]])",
+                 R"("fixedIndices": [{"x": 5, "y": 5, "z": 5}], "dtRender": 100)");
       DIATOM_VERIFY_OK(opened);
       std::string notes;
       for (const auto &note : opened->notes)
@@ -192,14 +213,16 @@ private slots:
       QVERIFY(model.material(model.material("brass")).role == ElectricalRole::conductor);
    }
 
-   /// A composite at an odd height turns by -90 degrees about z: its bricks follow the layers they come to lie in.
+   /// A composite at an odd height turns by -90 degrees about z: its bricks follow the layers they come to
+   /// lie in.
    void compositesAtOddHeightsTurn()
    {
-      const auto opened = readDesign(R"({"assembly": {"cellType": "cube", "connectionType": "gik", "latticeType": "willGik",
+      const auto opened =
+          readDesign(R"({"assembly": {"cellType": "cube", "connectionType": "gik", "latticeType": "willGik",
          "units": "mm", "scale": 2, "sparseCells": [[[null, {"materialName": "super1"}]]]},
          "materials": {"m": {"name": "M"}, "super1": {"name": "S", "cellsMin": {"x": 0, "y": 0, "z": 0},
          "sparseCells": [[[{"materialName": "m", "length": 3}, null]], [[null, {"materialName": "m", "length": 2}]]]}}})",
-                                     "gik.json", Job());
+                     "gik.json", Job());
       DIATOM_VERIFY_OK(opened);
       const auto &model = opened->design.model;
       QCOMPARE(model.lattice.pitch, 2e-3);
@@ -208,9 +231,10 @@ private slots:
          expand(model, p.definition, p.origin, all);
          return true;
       });
-      // Local brick of 3 along +y at (0,0,0) -> world z = 1, along +x from the origin; local brick of 2 along +x at
-      // (1,0,1) -> (0,-1) running to -y at z = 2.
-      const std::map<Index, int> expected{{{0, 0, 1}, 2}, {{1, 0, 1}, 3}, {{2, 0, 1}, 1}, {{0, -2, 2}, 2}, {{0, -1, 2}, 1}};
+      // Local brick of 3 along +y at (0,0,0) -> world z = 1, along +x from the origin; local brick of 2 along
+      // +x at (1,0,1) -> (0,-1) running to -y at z = 2.
+      const std::map<Index, int> expected{
+          {{0, 0, 1}, 2}, {{1, 0, 1}, 3}, {{2, 0, 1}, 1}, {{0, -2, 2}, 2}, {{0, -1, 2}, 1}};
       QCOMPARE(all.cells.size(), expected.size());
       for (const auto &[index, joins] : expected) {
          QVERIFY(all.cells.contains(index));
@@ -222,10 +246,13 @@ private slots:
    {
       const auto wrong = amoeba(R"("sparseCells": [[[{"materialID": 5}]]])", "");
       QVERIFY(!wrong.ok());
-      QVERIFY2(wrong.error().message.find("/assembly/sparseCells/0/0/0/materialID") != std::string::npos, wrong.error().message.c_str());
-      const auto circle = readDesign(R"({"materials": {"superA": {"sparseCells": [[[{"materialName": "superA"}]]]}}})", "x", Job());
+      QVERIFY2(wrong.error().message.find("/assembly/sparseCells/0/0/0/materialID") != std::string::npos,
+               wrong.error().message.c_str());
+      const auto circle = readDesign(
+          R"({"materials": {"superA": {"sparseCells": [[[{"materialName": "superA"}]]]}}})", "x", Job());
       QVERIFY(!circle.ok());
-      QVERIFY2(circle.error().message.find("contains itself") != std::string::npos, circle.error().message.c_str());
+      QVERIFY2(circle.error().message.find("contains itself") != std::string::npos,
+               circle.error().message.c_str());
    }
 };
 
