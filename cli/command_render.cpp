@@ -1,14 +1,14 @@
 // diatom render: a picture of a design, at rest or at a moment of its simulation, without any display.
 #include "cli/commands.h"
-#include "core/file.h"
+#include "cli/picture.h"
 #include "core/text.h"
-#include "render/design_overlay.h"
-#include "render/offscreen.h"
-#include "render/scene_view.h"
+#include "scene/simulation.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace diatom::cli {
@@ -24,16 +24,17 @@ struct Options
 
 Result<std::pair<int, int>> parseSize(const std::string &text)
 {
-   const auto cross = text.find('x');
-   const auto width = parseInteger(std::string_view(text).substr(0, cross));
+   const auto cross = std::min(text.find('x'), text.size());
+   const auto width = parseInteger(std::string_view(text).substr(0, cross)).value_or(0);
    const auto height =
-       cross == std::string::npos ? std::nullopt : parseInteger(std::string_view(text).substr(cross + 1));
-   if (!width || !height || *width < 16 || *height < 16 || *width > 16384 || *height > 16384)
+       parseInteger(std::string_view(text).substr(std::min(cross + 1, text.size()))).value_or(0);
+   const auto fits = [](std::int64_t pixels) { return pixels >= 16 && pixels <= 16384; };
+   if (!fits(width) || !fits(height))
       return Error{
           ErrorCode::usage,
           fmt::format("--size: \"{}\" is not WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800",
                       text)};
-   return std::pair{int(*width), int(*height)};
+   return std::pair{int(width), int(height)};
 }
 
 /// Runs the simulation to the asked moment.
@@ -44,8 +45,6 @@ Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &inp
    auto scene = Scene::build(*input.hierarchy, setup, context.job());
    if (!scene)
       return scene.error();
-   auto moment = std::make_shared<render::Moment>();
-   moment->indices = std::make_shared<const std::vector<Index>>((*scene)->indices());
    auto simulation = Simulation::start(context.catalogue(), std::move(*scene), setup, {}, context.job());
    if (!simulation)
       return simulation.error();
@@ -54,58 +53,34 @@ Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &inp
       return rest.error();
    if (Status status = (*simulation)->advance(options.atTime, context.job()); !status)
       return status.error();
-   auto frame = (*simulation)->frame(context.job());
-   if (!frame)
-      return frame.error();
-   moment->frame = std::move(*frame);
-   auto magnitudes = render::displacementMagnitudes(moment->frame.position, rest->position);
-   moment->displacement = std::move(magnitudes.values);
-   moment->highest = magnitudes.highest;
-   return std::shared_ptr<const render::Moment>(std::move(moment));
+   return momentOf(**simulation, *rest, context.job());
 }
 
-Status drawPicture(const Context::Input &input, const Options &options, std::pair<int, int> size,
-                   Context &context)
+Status draw(const Context::Input &input, const Options &options, std::pair<int, int> size, Context &context)
 {
-   const bool byDisplacement = options.colour == "displacement";
-   render::SceneView view;
-   view.setDesign(input.hierarchy, options.hierarchy, !options.noGrid);
-   render::Overlay overlay;
-   render::Camera camera;
-   camera.resize(size.first, size.second);
-   camera.look(*render::viewDirection(options.view));
-   camera.setReach(view.reach());
-   camera.fit(view.bounds());
-   render::addTriad(overlay, camera);
-   if (options.atTime > 0 || byDisplacement) {
-      const auto moment = simulate(input, options, context);
+   PictureRequest request;
+   request.out = options.out;
+   request.view = options.view;
+   std::tie(request.width, request.height) = size;
+   request.hierarchy = options.hierarchy;
+   request.grid = !options.noGrid;
+   request.byDisplacement = options.colour == "displacement";
+   if (options.atTime > 0 || request.byDisplacement) {
+      auto moment = simulate(input, options, context);
       if (!moment)
          return moment.error();
-      view.setFrame(*moment, byDisplacement);
-      if (byDisplacement)
-         render::addLegend(overlay, camera, render::lengthLegend("displacement", (*moment)->highest),
-                           {30, 36, 44, 255});
+      request.moment = *std::move(moment);
    }
-   auto offscreen = render::Offscreen::make();
-   if (!offscreen)
-      return offscreen.error();
-   view.upload((*offscreen)->renderer());
-   (*offscreen)->renderer().setOverlay(overlay);
-   const auto image = (*offscreen)->picture(camera, size.first, size.second);
-   if (!image)
-      return image.error();
-   const auto png = render::encodePng(*image);
-   if (!png)
-      return png.error();
-   if (Status status = writeFileAtomic(options.out, *png); !status)
-      return status;
+   const auto drawn = drawPicture(input, request);
+   if (!drawn)
+      return drawn.error();
    if (options.out != "-")
       context.print({{"file", options.out},
                      {"width", size.first},
                      {"height", size.second},
                      {"cells", input.hierarchy->cells()},
-                     {"faces", view.faces()},
-                     {"composites_as_boxes", view.boxed()}});
+                     {"faces", drawn->faces},
+                     {"composites_as_boxes", drawn->boxed}});
    return {};
 }
 
@@ -119,7 +94,7 @@ void run(const Options &options, Context &context)
    const auto input = context.open(options.file);
    if (!input)
       return;
-   if (Status status = drawPicture(*input, options, *size, context); !status)
+   if (Status status = draw(*input, options, *size, context); !status)
       context.fail(status.error());
 }
 

@@ -149,9 +149,9 @@ void JourneysTest::aLatticeThatIsNotCubes()
 {
    Studio studio;
    QVERIFY(studio.ready());
-   QVERIFY(studio.choose({"menu.file", "menu.new"}, "file.new.org.diatom_cad.lattice.kelvin"));
+   QVERIFY(studio.choose({"menu.file", "menu.new"}, "file.new.org.diatom_cad.lattice.kelvin_body_centred"));
    QTRY_COMPARE(studio.window.session().design().model.lattice.id,
-                std::string("org.diatom_cad.lattice.kelvin"));
+                std::string("org.diatom_cad.lattice.kelvin_body_centred"));
    QVERIFY(studio.settle());
    studio.click(*studio.view().screenPosBase({0, 0, 0}));
    QTRY_COMPARE(studio.cells(), std::uint64_t(1));
@@ -193,7 +193,8 @@ void JourneysTest::aLatticeThatIsNotCubes()
                   .contains(QString("face %1").arg(studio.view().ghost().port.feature)));
       at = *studio.view().screenPos(first, Contact::face, studio.view().ghost().port.feature);
       studio.click(at);
-      QTRY_COMPARE(studio.cells(), ++count);
+      ++count;
+      QTRY_COMPARE(studio.cells(), count);
       QVERIFY(!studio.window.session().hierarchy()->at(expected).empty());
    }
 
@@ -215,7 +216,8 @@ void JourneysTest::aLatticeThatIsNotCubes()
    const QImage shown = studio.picture();
    const QPoint middle = (studio.view().screenPos(hidden)->toPoint());
    studio.click(at);
-   QTRY_COMPARE(studio.cells(), ++count);
+   ++count;
+   QTRY_COMPARE(studio.cells(), count);
    QVERIFY(!studio.window.session().hierarchy()->at(hidden).empty());
    // Around the hidden neighbour's middle the picture with the ghost differs from the one without.
    studio.key(Qt::Key_Z, Qt::ControlModifier);

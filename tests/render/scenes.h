@@ -52,7 +52,7 @@ inline Model randomModel(const std::string &lattice, int size, double density, u
    for (int x = -size; x <= size; ++x)
       for (int y = -size; y <= size; ++y)
          for (int z = 0; z <= size; ++z)
-            if (random() < density * 4294967295.0)
+            if (double(random()) < density * 4294967295.0)
                model.root.cells.set({x, y, z}, Cell{static_cast<MaterialIndex>(1 + random() % 2), 0, 0});
    return model;
 }
