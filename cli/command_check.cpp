@@ -45,7 +45,7 @@ void checkParts(const Context::Input &input, Context &context, std::vector<Probl
    if (!parts->left.empty())
       problems.push_back({Problem::Severity::error, "cells-without-part",
                           fmt::format("no part covers {} cells: {}; change the design or the decomposition",
-                                      parts->left.size(), cellsText(parts->left)),
+                                      parts->left.size(), indicesText(parts->left)),
                           parts->left});
    auto plan = planAssembly(*input.hierarchy, *parts, context.job());
    if (!plan)

@@ -18,6 +18,7 @@ void addSimulate(CLI::App &app, Context &context);
 void addCircuit(CLI::App &app, Context &context);
 void addEffects(CLI::App &app, Context &context);
 void addCheck(CLI::App &app, Context &context);
+void addPipeline(CLI::App &app, Context &context);
 void addRender(CLI::App &app, Context &context);
 void addDo(CLI::App &app, Context &context);
 void addBench(CLI::App &app, Context &context);

@@ -8,8 +8,9 @@ using namespace diatom::cli;
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    addInfo,    addCheck,   addConvert, addDo,       addExport, addPlan,     addSimulate,
-    addEffects, addCircuit, addPlugins, addLattices, addParts,  addMachines, addSolvers,
+    addInfo,     addCheck,    addConvert,  addDo,      addExport,   addPlan,
+    addRender,   addSimulate, addEffects,  addCircuit, addPipeline, addPlugins,
+    addLattices, addParts,    addMachines, addSolvers, addBench,
 };
 
 } // namespace

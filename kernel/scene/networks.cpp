@@ -88,11 +88,11 @@ void NetworkFinder::attachSources()
        fmt::format(
            "a source is set on a cell that does not conduct: {}; make it a source or conductor cell, or move "
            "the source",
-           cellsText(misplaced)),
+           indicesText(misplaced)),
        misplaced);
    report(Problem::Severity::warning, "source-without-signal",
           fmt::format("a source cell has no signal: {}; give it a waveform, or it stays at 0 V",
-                      cellsText(silent)),
+                      indicesText(silent)),
           silent);
 }
 
@@ -104,7 +104,7 @@ void NetworkFinder::attachTwoTerminalSource(int source, std::int32_t cell)
       const bool higher = (m_wiring.ports[static_cast<std::size_t>(cell)] >> (contact.port + 1)) == 0;
       (higher ? plus : minus) = netOf(contact.conductor);
    }
-   const std::string where = cellText(index(cell));
+   const std::string where = indexText(index(cell));
    if (plus >= 0 && plus == minus) {
       report(Problem::Severity::error, "source-shorted",
              fmt::format("both terminals of the source at {} are on one net; interrupt the wire between them",
@@ -131,27 +131,27 @@ void NetworkFinder::attachActuators()
    report(Problem::Severity::error, "floating-actuator",
           fmt::format(
               "an actuator has an open terminal and stays passive: {}; put conductors on two opposite faces",
-              cellsText(m_floating)),
+              indicesText(m_floating)),
           m_floating);
    report(
        Problem::Severity::error, "ambiguous-actuator",
        fmt::format(
            "conductors do not meet an actuator on exactly two opposite faces, so that it stays passive: {}; "
            "remove the others",
-           cellsText(m_ambiguous)),
+           indicesText(m_ambiguous)),
        m_ambiguous);
    report(Problem::Severity::error, "slanted-actuator",
           fmt::format("the terminals of an actuator lie along no axis, which solvers cannot drive: {}; wire "
                       "it along x, y "
                       "or z",
-                      cellsText(m_slanted)),
+                      indicesText(m_slanted)),
           m_slanted);
    report(
        Problem::Severity::error, "shorted-actuator",
        fmt::format(
            "both terminals of an actuator are on one net, so that it stays passive: {}; interrupt the wire "
            "between them, or use an actuator that takes its axis from its wires",
-           cellsText(m_shorted)),
+           indicesText(m_shorted)),
        m_shorted);
 }
 
@@ -195,24 +195,24 @@ void NetworkFinder::checkNets()
       if (!one.sources.empty() && !one.returns.empty())
          report(Problem::Severity::error, "opposite-polarity",
                 fmt::format("sources drive one net with opposite polarity: {}; separate them",
-                            cellsText(drivers)),
+                            indicesText(drivers)),
                 drivers);
       else if (drivers.size() > 1)
          report(
              Problem::Severity::error, "two-sources",
              fmt::format("{} sources drive one net: {}; keep one of them or interrupt the wire between them",
-                         drivers.size(), cellsText(drivers)),
+                         drivers.size(), indicesText(drivers)),
              drivers);
       else if (!drivers.empty() && drivers == one.cells && one.actuators.empty())
          report(
              Problem::Severity::warning, "open-source",
-             fmt::format("the source at {} touches no conductor; wire it or remove it", cellsText(drivers)),
+             fmt::format("the source at {} touches no conductor; wire it or remove it", indicesText(drivers)),
              drivers);
       else if (drivers.empty() && !one.actuators.empty())
          report(Problem::Severity::warning, "net-without-source",
                 fmt::format("the net at {} feeds {} actuators but has no source, so that it stays at 0 V; "
                             "put a source on it",
-                            cellText(one.cells.front()), one.actuators.size()),
+                            indexText(one.cells.front()), one.actuators.size()),
                 one.cells);
    }
 }
@@ -227,7 +227,7 @@ void NetworkFinder::checkPorts()
    report(
        Problem::Severity::warning, "port-facing-nothing",
        fmt::format("a conductor has a port that meets no other port: {}; turn the cell or continue the wire",
-                   cellsText(blind)),
+                   indicesText(blind)),
        blind);
 }
 

@@ -19,7 +19,7 @@ void addMissing(std::vector<Problem> &problems, const char *what, const std::vec
       problems.push_back(
           {Problem::Severity::error, fmt::format("{}-without-cell", what),
            fmt::format("there is no cell where a {} is set: {}; place a cell there or remove the {}", what,
-                       cellsText(missing), what),
+                       indicesText(missing), what),
            missing});
 }
 
@@ -35,14 +35,14 @@ std::vector<Index> withoutCell(const Hierarchy &hierarchy, const std::vector<Ite
 
 } // namespace
 
-std::string cellText(Index cell) { return fmt::format("({}, {}, {})", cell.x, cell.y, cell.z); }
+std::string indexText(Index cell) { return fmt::format("({}, {}, {})", cell.x, cell.y, cell.z); }
 
-std::string cellsText(const std::vector<Index> &cells)
+std::string indicesText(const std::vector<Index> &cells)
 {
    constexpr std::size_t kShown = 4;
    std::string text;
    for (std::size_t i = 0; i < std::min(cells.size(), kShown); ++i)
-      text += (i > 0 ? ", " : "") + cellText(cells[i]);
+      text += (i > 0 ? ", " : "") + indexText(cells[i]);
    if (cells.size() > kShown)
       text += fmt::format(" and {} more", cells.size() - kShown);
    return text;
@@ -78,9 +78,9 @@ std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &
       if (!seen.insert(support.cell).second)
          repeated.push_back(support.cell);
    if (!repeated.empty())
-      problems.push_back({Problem::Severity::error, "repeated-support",
-                          fmt::format("a cell has more than one support: {}; keep one", cellsText(repeated)),
-                          repeated});
+      problems.push_back(
+          {Problem::Severity::error, "repeated-support",
+           fmt::format("a cell has more than one support: {}; keep one", indicesText(repeated)), repeated});
    return problems;
 }
 
@@ -99,7 +99,7 @@ std::vector<Problem> findFloatingBodies(const Bodies &bodies, const Setup &setup
              {Problem::Severity::warning, "floating-body",
               fmt::format("nothing holds the body of {} cells at {}: it will fall for ever; support one "
                           "of its cells, set a ground, or set gravity to zero",
-                          body.size(), cellText(body.front())),
+                          body.size(), indexText(body.front())),
               body});
    }
    return problems;

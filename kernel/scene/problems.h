@@ -28,8 +28,8 @@ std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &
 std::vector<Problem> findFloatingBodies(const Bodies &bodies, const Setup &setup);
 
 /// "(1, 2, 3)".
-std::string cellText(Index cell);
+std::string indexText(Index cell);
 /// Up to four cells: "(1, 2, 3), (4, 5, 6) and 7 more".
-std::string cellsText(const std::vector<Index> &cells);
+std::string indicesText(const std::vector<Index> &cells);
 
 } // namespace diatom

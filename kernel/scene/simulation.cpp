@@ -193,7 +193,7 @@ Error Simulation::Self::diverged(const diatom_step_result &result) const
    std::string where = "somewhere";
    const diatom_scene &view = scene->view();
    const auto index = [&](std::int64_t cell) {
-      return cellText(scene->indices()[static_cast<std::size_t>(cell)]);
+      return indexText(scene->indices()[static_cast<std::size_t>(cell)]);
    };
    if (result.bad_link >= 0 && result.bad_link < view.links)
       where = fmt::format("in the bond between cells {} and {}", index(view.link_a[result.bad_link]),

@@ -3,7 +3,7 @@
 #include "assembly/columns.h"
 #include "kernel/assembly_scene.h"
 
-#include <chrono>
+#include <ctime>
 
 using namespace diatom;
 using namespace diatom::test;
@@ -119,10 +119,8 @@ void verifySteps(const AssemblyScene &scene, const AssemblyPlan &plan)
    QCOMPARE(placed.size() + told.size(), scene.parts.covered.size());
 }
 
-double seconds(std::chrono::steady_clock::time_point since)
-{
-   return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
-}
+/// Processor time, as the tests may run beside others; planning and writing use one thread.
+double processorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 } // namespace
 
@@ -397,8 +395,7 @@ private slots:
 
    void aMillionPartsArePlannedAndWritten()
    {
-      // Figure of the design: 10^6 placements planned and written in 10 s. Printed, and bounded loosely, as
-      // the machine that runs the tests may be shared.
+      // Figure of the design: 10^6 placements planned and written in 10 s. Printed, and bounded loosely.
       std::vector<Index> cells;
       for (std::int32_t z = 0; z < 100; ++z)
          for (std::int32_t y = 0; y < 100; ++y)
@@ -417,24 +414,24 @@ private slots:
          part.cells = 1;
          scene.parts.parts.push_back(part);
       }
-      auto start = std::chrono::steady_clock::now();
+      double start = processorSeconds();
       const AssemblyPlan plan = planOf(scene);
-      const double planning = seconds(start);
+      const double planning = processorSeconds() - start;
       QCOMPARE(plan.order.size(), cells.size());
 
       Job job;
       const auto machine = Machine::make(*catalogue(), "org.diatom_cad.machine.gcode", {}, job);
       DIATOM_VERIFY_OK(machine);
       std::size_t bytes = 0;
-      start = std::chrono::steady_clock::now();
+      start = processorSeconds();
       const auto summary = (*machine)->write(
           *scene.hierarchy, scene.parts, plan, "million",
           [&](std::string_view text) { bytes += text.size(); }, job);
-      const double writing = seconds(start);
+      const double writing = processorSeconds() - start;
       DIATOM_VERIFY_OK(summary);
       QCOMPARE(summary->placements, std::int64_t{1000000});
-      qInfo("10^6 placements: planned in %.2f s, written in %.2f s (%.0f MB)", planning, writing,
-            double(bytes) / 1e6);
+      qInfo("10^6 placements: planned in %.2f s, written in %.2f s of processor time (%.0f MB)", planning,
+            writing, double(bytes) / 1e6);
       QVERIFY(planning + writing < 60);
    }
 };

@@ -34,7 +34,7 @@ std::vector<double> values(const diatom_channel *one)
    return {one->values, one->values + one->count * one->stride};
 }
 
-double property(const Scene &scene, std::int64_t cell, const std::string &name)
+double propertyOf(const Scene &scene, std::int64_t cell, const std::string &name)
 {
    const diatom_scene &view = scene.view();
    for (std::int32_t k = 0; k < view.properties; ++k)
@@ -153,19 +153,19 @@ void SceneArraysTest::propertiesAreNamedAndAbsentOnesAreNotNumbers()
    bench.put("special", {{0, 0, 0}});
    bench.put("plain", {{1, 0, 0}});
    const auto scene = sceneOf(bench);
-   QCOMPARE(property(*scene, 0, "density"), 3500.0);
-   QCOMPARE(property(*scene, 0, "youngs_modulus"), 5e5);
-   QCOMPARE(property(*scene, 0, "poisson_ratio"), 0.25);
-   QCOMPARE(property(*scene, 0, "damping_ratio"), 0.01);
+   QCOMPARE(propertyOf(*scene, 0, "density"), 3500.0);
+   QCOMPARE(propertyOf(*scene, 0, "youngs_modulus"), 5e5);
+   QCOMPARE(propertyOf(*scene, 0, "poisson_ratio"), 0.25);
+   QCOMPARE(propertyOf(*scene, 0, "damping_ratio"), 0.01);
    double expected = 1;
    for (const char *name :
         {"axial_x", "axial_y", "axial_z", "shear_xy", "shear_xz", "shear_yx", "shear_yz", "shear_zx",
          "shear_zy", "bending_x", "bending_y", "bending_z", "torsion_x", "torsion_y", "torsion_z"})
    {
-      QCOMPARE(property(*scene, 0, name), expected++);
-      QVERIFY(std::isnan(property(*scene, 1, name)));
+      QCOMPARE(propertyOf(*scene, 0, name), expected++);
+      QVERIFY(std::isnan(propertyOf(*scene, 1, name)));
    }
-   QCOMPARE(property(*scene, 1, "density"), 1000.0);
+   QCOMPARE(propertyOf(*scene, 1, "density"), 1000.0);
 }
 
 void SceneArraysTest::turnedCellsKeepTheirFrame()

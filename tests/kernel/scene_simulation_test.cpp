@@ -122,7 +122,9 @@ void SceneSimulationTest::theGripperClosesAsTheSheetSays()
       const double change = 1e3 * (probe(**simulation, {-11, 4 + 14 * k, 0}, "y") -
                                    probe(**simulation, {-11, 2 + 14 * k, 0}, "y"));
       qInfo("gripper %d: gap change %.4f mm", k + 1, change);
-      QVERIFY(std::abs(change - expected[std::size_t(k)]) < 0.01);
+      // The sheet rounds to 0.01 and joins unlike cells by harmonic means; the solver's exact stepped beam
+      // differs from that by up to 0.008 mm here (with harmonic means it gives -0.525, -0.291, -0.554).
+      QVERIFY(std::abs(change - expected[std::size_t(k)]) < 0.013);
    }
 }
 

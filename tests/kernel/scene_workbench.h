@@ -25,7 +25,8 @@ struct Workbench
    Model model;
    Setup setup;
    std::shared_ptr<const Lattice> lattice;
-   Job job;
+   std::shared_ptr<Job> ownedJob = std::make_shared<Job>();
+   Job &job = *ownedJob;
 
    explicit Workbench(const std::string &id = "org.diatom_cad.lattice.cube")
    {

@@ -1,0 +1,63 @@
+// Benchmarks: what one is, and how it measures. One file per group (bench_GROUP.cpp) hands out a table of
+// them.
+#pragma once
+
+#include "core/hash.h"
+#include "core/result.h"
+#include "plugins/catalogue.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace diatom::cli {
+
+/// Measures one benchmark: time as the median of several runs, memory as the peak over them above where it
+/// began.
+class Measure
+{
+public:
+   Measure(std::shared_ptr<const Catalogue> catalogue, bool quick)
+       : m_catalogue(std::move(catalogue)), m_quick(quick)
+   {}
+
+   const std::shared_ptr<const Catalogue> &catalogue() const { return m_catalogue; }
+   /// Smaller work, for a look in passing and for tests.
+   bool quick() const { return m_quick; }
+   /// Runs the work `times` times (once when quick) and keeps every time.
+   void time(int times, const std::function<void()> &work);
+   /// How much one run did: `amount` of `unit` ("cells", "rays").
+   void did(double amount, std::string unit);
+   /// What came out, so that two measurements are known to be of the same thing.
+   void result(const Hash &hash) { m_hash = hash; }
+
+   double seconds() const;
+   double rate() const;
+   const std::string &unit() const { return m_unit; }
+   std::uint64_t peakBytes() const { return m_peakBytes; }
+   const Hash &hash() const { return m_hash; }
+
+private:
+   std::shared_ptr<const Catalogue> m_catalogue;
+   bool m_quick;
+   std::vector<double> m_seconds;
+   double m_amount = 0;
+   std::string m_unit;
+   std::uint64_t m_peakBytes = 0;
+   Hash m_hash;
+};
+
+struct Benchmark
+{
+   std::string_view name;
+   std::string_view what;
+   Status (*run)(Measure &measure);
+};
+
+std::span<const Benchmark> cellBenchmarks();
+
+} // namespace diatom::cli

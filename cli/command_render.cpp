@@ -1,0 +1,124 @@
+// diatom render: a picture of a design, at rest or at a moment of its simulation, without any display.
+#include "cli/commands.h"
+#include "cli/picture.h"
+#include "core/text.h"
+#include "scene/simulation.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace diatom::cli {
+
+namespace {
+
+struct Options
+{
+   std::string file, out, size = "1280x800", view = "iso", colour = "material";
+   double atTime = 0;
+   bool hierarchy = false, noGrid = false;
+};
+
+Result<std::pair<int, int>> parseSize(const std::string &text)
+{
+   const auto cross = std::min(text.find('x'), text.size());
+   const auto width = parseInteger(std::string_view(text).substr(0, cross)).value_or(0);
+   const auto height =
+       parseInteger(std::string_view(text).substr(std::min(cross + 1, text.size()))).value_or(0);
+   const auto fits = [](std::int64_t pixels) { return pixels >= 16 && pixels <= 16384; };
+   if (!fits(width) || !fits(height))
+      return Error{
+          ErrorCode::usage,
+          fmt::format("--size: \"{}\" is not WIDTHxHEIGHT in pixels, 16 to 16384 each, as in 1280x800",
+                      text)};
+   return std::pair{int(width), int(height)};
+}
+
+/// Runs the simulation to the asked moment.
+Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &input, const Options &options,
+                                                       Context &context)
+{
+   const Setup &setup = input.opened.design.setup;
+   auto scene = Scene::build(*input.hierarchy, setup, context.job());
+   if (!scene)
+      return scene.error();
+   auto simulation = Simulation::start(context.catalogue(), std::move(*scene), setup, {}, context.job());
+   if (!simulation)
+      return simulation.error();
+   const auto rest = (*simulation)->frame(context.job());
+   if (!rest)
+      return rest.error();
+   if (Status status = (*simulation)->advance(options.atTime, context.job()); !status)
+      return status.error();
+   return momentOf(**simulation, *rest, context.job());
+}
+
+Status draw(const Context::Input &input, const Options &options, std::pair<int, int> size, Context &context)
+{
+   PictureRequest request;
+   request.out = options.out;
+   request.view = options.view;
+   std::tie(request.width, request.height) = size;
+   request.hierarchy = options.hierarchy;
+   request.grid = !options.noGrid;
+   request.byDisplacement = options.colour == "displacement";
+   if (options.atTime > 0 || request.byDisplacement) {
+      auto moment = simulate(input, options, context);
+      if (!moment)
+         return moment.error();
+      request.moment = *std::move(moment);
+   }
+   const auto drawn = drawPicture(input, request);
+   if (!drawn)
+      return drawn.error();
+   if (options.out != "-")
+      context.print({{"file", options.out},
+                     {"width", size.first},
+                     {"height", size.second},
+                     {"cells", input.hierarchy->cells()},
+                     {"faces", drawn->faces},
+                     {"composites_as_boxes", drawn->boxed}});
+   return {};
+}
+
+void run(const Options &options, Context &context)
+{
+   const auto size = parseSize(options.size);
+   if (!size) {
+      context.fail(size.error());
+      return;
+   }
+   const auto input = context.open(options.file);
+   if (!input)
+      return;
+   if (Status status = draw(*input, options, *size, context); !status)
+      context.fail(status.error());
+}
+
+} // namespace
+
+void addRender(CLI::App &app, Context &context)
+{
+   auto options = std::make_shared<Options>();
+   CLI::App *command = app.add_subcommand("render", "Draw a picture of a design; needs no display");
+   command->add_option("FILE", options->file, "Design, or file of an earlier program; - reads standard input")
+       ->required();
+   command->add_option("OUT.png", options->out, "Picture to write; - writes standard output")->required();
+   command->add_option("--size", options->size, "Pixels, as WIDTHxHEIGHT")->capture_default_str();
+   command->add_option("--view", options->view, "Direction to look from")
+       ->check(CLI::IsMember({"iso", "front", "back", "left", "right", "top", "bottom"}))
+       ->capture_default_str();
+   command->add_option("--at-time", options->atTime, "Seconds to simulate first")
+       ->check(CLI::NonNegativeNumber);
+   command->add_option("--colour,--color", options->colour, "What colours mean; displacement draws a legend")
+       ->check(CLI::IsMember({"material", "displacement"}))
+       ->capture_default_str();
+   command->add_flag("--hierarchy", options->hierarchy, "Draw composites as boxes");
+   command->add_flag("--no-grid", options->noGrid, "Leave the base plane out");
+   command->callback([options, &context] { run(*options, context); });
+}
+
+} // namespace diatom::cli

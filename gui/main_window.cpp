@@ -1,0 +1,357 @@
+#include "gui/main_window.h"
+
+#include <QCloseEvent>
+#include <QDockWidget>
+#include <QLabel>
+#include <QLocale>
+#include <QMenuBar>
+#include <QMessageBox>
+#include <QStatusBar>
+#include <QToolBar>
+#include <QVBoxLayout>
+
+#include <algorithm>
+
+namespace diatom::gui {
+
+namespace {
+
+constexpr int kLayoutVersion = 1;
+
+} // namespace
+
+MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *settings, QWidget *parent)
+    : QMainWindow(parent), m_settings(settings), m_session(std::move(catalogue)), m_actions(this)
+{
+   setObjectName(QStringLiteral("mainWindow"));
+   auto *central = new QWidget(this);
+   auto *layout = new QVBoxLayout(central);
+   layout->setContentsMargins(0, 0, 0, 0);
+   layout->setSpacing(0);
+   m_messages = new MessageBar(central);
+   m_viewport = new Viewport(&m_session, central);
+   layout->addWidget(m_messages);
+   layout->addWidget(m_viewport, 1);
+   setCentralWidget(central);
+   m_legend = new LegendWidget(m_viewport);
+   m_hint = new QLabel(m_viewport);
+   m_hint->setObjectName(QStringLiteral("hint"));
+   m_hint->setAttribute(Qt::WA_TransparentForMouseEvents);
+   m_hint->setStyleSheet(QStringLiteral(
+       "background: rgba(255,255,255,205); color: #1e242c; border-radius: 5px; padding: 4px 8px;"));
+   m_hint->hide();
+
+   m_hotbar = new Hotbar(&m_session, this);
+   auto *dock = new QDockWidget(tr("Materials"), this);
+   dock->setObjectName(QStringLiteral("materialsDock"));
+   dock->setFeatures(
+       QDockWidget::DockWidgetMovable); // floating docks cannot be put back on Wayland (QTBUG-87332)
+   dock->setWidget(m_hotbar);
+   addDockWidget(Qt::RightDockWidgetArea, dock);
+
+   makeMenus();
+   makeToolColumn();
+   makeStatusBar();
+   connectActions();
+   connectViews();
+   m_viewport->installEventFilter(this);
+   resize(1280, 800);
+   if (m_settings) {
+      restoreGeometry(m_settings->value("window/geometry").toByteArray());
+      restoreState(m_settings->value("window/state").toByteArray(), kLayoutVersion);
+   }
+   updateActions();
+   updateCounts();
+   updateRun();
+   m_viewport->setFocus();
+}
+
+MainWindow::~MainWindow() { m_player.disconnect(this); }
+
+void MainWindow::makeMenus()
+{
+   struct Menu
+   {
+      const char *id;
+      QString title;
+   };
+   for (const auto &[id, title] :
+        {Menu{"file", tr("&File")}, Menu{"edit", tr("&Edit")}, Menu{"view", tr("&View")},
+         Menu{"simulate", tr("&Simulate")}, Menu{"help", tr("&Help")}})
+   {
+      QMenu *menu = menuBar()->addMenu(title);
+      menu->setObjectName(QStringLiteral("menu.%1").arg(QString::fromUtf8(id)));
+      menu->setToolTipsVisible(true);
+      if (std::string_view(id) == "file") {
+         makeNewMenu(menu);
+         makeSamplesMenu(menu);
+      }
+      m_actions.addTo(menu, id);
+   }
+}
+
+void MainWindow::makeNewMenu(QMenu *file)
+{
+   QMenu *menu = file->addMenu(tr("&New"));
+   menu->setObjectName(QStringLiteral("menu.new"));
+   bool first = true;
+   for (const Offer &offer : m_session.catalogue()->offers(DIATOM_LATTICE_1)) {
+      const std::string id = offer.provided->id;
+      QAction *action = menu->addAction(QString::fromStdString(offer.provided->name));
+      action->setObjectName(QStringLiteral("file.new.") + QString::fromStdString(id));
+      action->setToolTip(QString::fromStdString(offer.provided->summary));
+      if (first || id == LatticeSpec{}.id) {
+         for (QAction *other : menu->actions())
+            other->setShortcut({});
+         action->setShortcut(QKeySequence::New);
+      }
+      first = false;
+      connect(action, &QAction::triggered, this, [this, id] {
+         if (mayDiscard())
+            m_session.newDesign(id);
+      });
+   }
+}
+
+void MainWindow::makeSamplesMenu(QMenu *file)
+{
+   QMenu *menu = file->addMenu(tr("Sa&mples"));
+   menu->setObjectName(QStringLiteral("menu.samples"));
+   for (const auto &folder : sampleFolders()) {
+      std::error_code error;
+      std::vector<std::filesystem::path> files;
+      for (const auto &entry : std::filesystem::directory_iterator(folder, error))
+         if (entry.path().extension() == ".diatom")
+            files.push_back(entry.path());
+      std::sort(files.begin(), files.end());
+      for (const auto &path : files) {
+         QString name = QString::fromStdString(path.stem().string());
+         name.replace(QLatin1Char('_'), QLatin1Char(' ')).replace(QLatin1Char('-'), QLatin1Char(' '));
+         name[0] = name[0].toUpper();
+         QAction *action = menu->addAction(name);
+         action->setObjectName(QStringLiteral("file.sample.") + QString::fromStdString(path.stem().string()));
+         action->setToolTip(tr("Open the sample %1").arg(name));
+         connect(action, &QAction::triggered, this, [this, path] {
+            if (mayDiscard())
+               open(path);
+         });
+      }
+      if (!files.empty())
+         break;
+   }
+   menu->setEnabled(!menu->isEmpty());
+}
+
+void MainWindow::makeToolColumn()
+{
+   auto *bar = new QToolBar(tr("Tools"), this);
+   bar->setObjectName(QStringLiteral("toolColumn"));
+   bar->setIconSize({26, 26});
+   for (const char *id : {"tool.place", "tool.erase", "tool.paint", "tool.pick"})
+      bar->addAction(m_actions[id]);
+   bar->addSeparator();
+   bar->addAction(m_actions["simulate.play"]);
+   bar->addAction(m_actions["simulate.reset"]);
+   addToolBar(Qt::LeftToolBarArea, bar);
+   m_actions["tool.place"]->setChecked(true);
+   m_actions["view.grid"]->setChecked(true);
+   m_actions["simulate.colour"]->setChecked(true);
+}
+
+void MainWindow::makeStatusBar()
+{
+   const auto label = [this](const char *name, const QString &meaning) {
+      auto *made = new QLabel(this);
+      made->setObjectName(QString::fromUtf8(name));
+      made->setToolTip(meaning);
+      return made;
+   };
+   m_address = label("status.address", tr("Cell and port under the pointer"));
+   m_counts = label("status.counts", tr("Cells and materials of the design"));
+   m_run = label("status.run", tr("Simulated time, and how it compares with real time"));
+   m_speed = label("status.speed", tr("Time to draw the last picture"));
+   m_task = new TaskRow(this);
+   statusBar()->addWidget(m_address, 1);
+   for (QWidget *widget : {static_cast<QWidget *>(m_task), static_cast<QWidget *>(m_counts),
+                           static_cast<QWidget *>(m_run), static_cast<QWidget *>(m_speed)})
+      statusBar()->addPermanentWidget(widget);
+}
+
+void MainWindow::on(std::string_view action, std::function<void()> act)
+{
+   connect(m_actions[action], &QAction::triggered, this, std::move(act));
+}
+
+void MainWindow::connectActions()
+{
+   on("file.open", [this] { chooseAndOpen(); });
+   on("file.save", [this] { save(false); });
+   on("file.saveAs", [this] { save(true); });
+   on("file.exportStl", [this] { exportStl(); });
+   on("file.quit", [this] { close(); });
+   on("edit.undo", [this] { m_session.undo(); });
+   on("edit.redo", [this] { m_session.redo(); });
+   on("edit.place", [this] { m_viewport->builder().act(); });
+   on("edit.fill", [this] { m_viewport->builder().fillRegion(); });
+   on("edit.eraseRegion", [this] { m_viewport->builder().eraseRegion(); });
+   on("edit.cancel", [this] {
+      m_viewport->builder().cancel();
+      m_messages->hide();
+   });
+   for (const auto &[id, tool] : {std::pair{"tool.place", Tool::place}, std::pair{"tool.erase", Tool::erase},
+                                  std::pair{"tool.paint", Tool::paint}, std::pair{"tool.pick", Tool::pick}})
+      on(id, [this, t = tool] { m_viewport->builder().setTool(t); });
+   for (const char *name : {"iso", "front", "back", "left", "right", "top", "bottom"})
+      on(std::string("view.") + name,
+         [this, direction = *render::viewDirection(name)] { m_viewport->look(direction); });
+   on("view.fit", [this] { m_viewport->fit(); });
+   on("view.orthographic",
+      [this] { m_viewport->setOrthographic(m_actions["view.orthographic"]->isChecked()); });
+   on("view.grid", [this] { m_viewport->setGrid(m_actions["view.grid"]->isChecked()); });
+   on("view.cells", [this] { m_viewport->setHierarchyView(false); });
+   on("view.hierarchy", [this] { m_viewport->setHierarchyView(true); });
+   on("simulate.play", [this] { togglePlay(); });
+   on("simulate.reset", [this] { m_player.reset(); });
+   on("simulate.colour", [this] { showFrame(); });
+   on("help.keys", [this] { showKeys(); });
+   on("help.about", [this] { showAbout(); });
+}
+
+void MainWindow::connectViews()
+{
+   const auto showError = [this](const QString &text) { m_messages->showMessage(text, true); };
+   connect(&m_session, &Session::failed, this, showError);
+   connect(&m_session, &Session::noted, this,
+           [this](const QString &text) { m_messages->showMessage(text, false); });
+   connect(&m_session, &Session::designChanged, this, [this] {
+      editStarted();
+      updateActions();
+      updateCounts();
+   });
+   connect(m_viewport, &Viewport::failed, this, showError);
+   connect(m_viewport, &Viewport::playWanted, this, &MainWindow::togglePlay);
+   connect(m_viewport, &Viewport::hoverChanged, this, [this] {
+      m_address->setText(m_viewport->builder().address());
+      m_hint->setText(m_viewport->builder().hint());
+      placeOverlays();
+      updateActions();
+   });
+   connect(m_viewport, &Viewport::framePainted, this,
+           [this] { m_speed->setText(tr("%1 ms").arg(1e3 * m_viewport->drawSeconds(), 0, 'f', 1)); });
+   connect(&m_player, &SimulationPlayer::frameReady, this, &MainWindow::showFrame);
+   connect(&m_player, &SimulationPlayer::failed, this, showError);
+   connect(&m_player, &SimulationPlayer::stateChanged, this, [this] {
+      if (!m_player.active())
+         showFrame();
+      updateActions();
+      updateRun();
+   });
+}
+
+void MainWindow::togglePlay()
+{
+   if (m_player.playing())
+      m_player.pause();
+   else if (m_session.hierarchy())
+      m_player.play(m_session.catalogue(), m_session.design(), m_session.hierarchy());
+}
+
+void MainWindow::showFrame()
+{
+   const auto frame = m_player.frame();
+   const bool coloured = m_actions["simulate.colour"]->isChecked();
+   m_viewport->showFrame(frame, coloured);
+   m_legend->setVisible(frame && coloured);
+   if (frame && coloured)
+      m_legend->setLegend(render::lengthLegend(tr("displacement").toStdString(), frame->highest));
+   updateRun();
+}
+
+/// A changed design is at rest: the run was of the one before.
+void MainWindow::editStarted()
+{
+   if (!m_player.active())
+      return;
+   m_player.reset();
+   m_messages->showMessage(tr("The design changed: the simulation is back at its start."), false);
+}
+
+void MainWindow::updateActions()
+{
+   QAction *undo = m_actions["edit.undo"], *redo = m_actions["edit.redo"];
+   undo->setEnabled(m_session.canUndo());
+   undo->setText(m_session.canUndo() ? tr("&Undo %1").arg(m_session.undoText()) : tr("Nothing to Undo"));
+   redo->setEnabled(m_session.canRedo());
+   redo->setText(m_session.canRedo() ? tr("&Redo %1").arg(m_session.redoText()) : tr("Nothing to Redo"));
+   const bool region = m_viewport->builder().region().has_value();
+   m_actions["edit.fill"]->setEnabled(region);
+   m_actions["edit.eraseRegion"]->setEnabled(region);
+   m_actions["edit.place"]->setEnabled(m_viewport->ghost().cell.has_value());
+   m_actions["simulate.play"]->setText(m_player.playing() ? tr("&Pause") : tr("&Play"));
+   m_actions["simulate.reset"]->setEnabled(m_player.active());
+   setWindowTitle(QStringLiteral("%1[*] - Diatom").arg(m_session.title()));
+   setWindowModified(m_session.modified());
+}
+
+void MainWindow::updateCounts()
+{
+   if (!m_session.hierarchy()) {
+      m_counts->clear();
+      return;
+   }
+   const auto perMaterial = m_session.hierarchy()->countByMaterial();
+   const auto used = std::count_if(perMaterial.begin(), perMaterial.end(), [](auto n) { return n > 0; });
+   m_counts->setText(tr("%1 cells, %2 materials")
+                         .arg(QLocale().toString(static_cast<qulonglong>(m_session.hierarchy()->cells())))
+                         .arg(used));
+}
+
+void MainWindow::updateRun()
+{
+   const auto frame = m_player.frame();
+   if (!frame) {
+      m_run->setText(m_player.active() ? tr("preparing") : tr("at rest"));
+      return;
+   }
+   QString text = tr("t %1 s").arg(frame->frame.time, 0, 'f', 3);
+   text +=
+       frame->realTimeFactor > 0 ? tr(", %1x real time").arg(frame->realTimeFactor, 0, 'g', 3) : QString();
+   m_run->setText(m_player.playing() ? text : text + tr(", paused"));
+}
+
+void MainWindow::placeOverlays()
+{
+   m_legend->move(m_viewport->width() - m_legend->width() - 12, 12);
+   m_hint->setVisible(!m_hint->text().isEmpty());
+   m_hint->adjustSize();
+   m_hint->move((m_viewport->width() - m_hint->width()) / 2, m_viewport->height() - m_hint->height() - 12);
+}
+
+bool MainWindow::eventFilter(QObject *watched, QEvent *event)
+{
+   if (watched == m_viewport && event->type() == QEvent::Resize)
+      placeOverlays();
+   return QMainWindow::eventFilter(watched, event);
+}
+
+void MainWindow::resizeEvent(QResizeEvent *event)
+{
+   QMainWindow::resizeEvent(event);
+   placeOverlays();
+}
+
+void MainWindow::closeEvent(QCloseEvent *event)
+{
+   if (!mayDiscard()) {
+      event->ignore();
+      return;
+   }
+   m_player.reset();
+   if (m_settings) {
+      m_settings->setValue("window/geometry", saveGeometry());
+      m_settings->setValue("window/state", saveState(kLayoutVersion));
+   }
+   event->accept();
+}
+
+} // namespace diatom::gui

@@ -1,0 +1,87 @@
+// The studio's window: menus and tool column from the action table, viewport, hotbar, status bar, and the
+// wiring.
+#pragma once
+
+#include "gui/actions.h"
+#include "gui/hotbar.h"
+#include "gui/legend_widget.h"
+#include "gui/message_bar.h"
+#include "gui/session.h"
+#include "gui/simulation_player.h"
+#include "gui/task_row.h"
+#include "gui/viewport.h"
+
+#include <QMainWindow>
+#include <QSettings>
+
+#include <filesystem>
+#include <string_view>
+
+class QLabel;
+
+namespace diatom::gui {
+
+class MainWindow : public QMainWindow
+{
+   Q_OBJECT
+
+public:
+   /// `settings` may be null: nothing is remembered then.
+   MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *settings, QWidget *parent = nullptr);
+   ~MainWindow() override;
+
+   Session &session() { return m_session; }
+   Viewport &viewport() { return *m_viewport; }
+   SimulationPlayer &player() { return m_player; }
+   bool busy() const { return m_task->busy(); }
+   /// In the background; the window shows it when it is read.
+   void open(const std::filesystem::path &file);
+
+   /// Folders with samples: beside an installed program and in the source tree.
+   static std::vector<std::filesystem::path> sampleFolders();
+
+protected:
+   void closeEvent(QCloseEvent *event) override;
+   void resizeEvent(QResizeEvent *event) override;
+   bool eventFilter(QObject *watched, QEvent *event) override;
+
+private:
+   void makeMenus();
+   void makeNewMenu(QMenu *file);
+   void makeSamplesMenu(QMenu *file);
+   void makeToolColumn();
+   void makeStatusBar();
+   void connectActions();
+   void connectViews();
+
+   bool mayDiscard();
+   void chooseAndOpen();
+   bool save(bool elsewhere);
+   void exportStl();
+   void togglePlay();
+   void showFrame();
+   void editStarted();
+   void showKeys();
+   void showAbout();
+   void updateActions();
+   void updateCounts();
+   void updateRun();
+   void placeOverlays();
+   void on(std::string_view action, std::function<void()> act);
+   QString lastFolder(const char *purpose) const;
+   void rememberFolder(const char *purpose, const QString &file);
+
+   QSettings *m_settings;
+   Session m_session;
+   SimulationPlayer m_player;
+   Actions m_actions;
+   MessageBar *m_messages;
+   Viewport *m_viewport;
+   Hotbar *m_hotbar;
+   LegendWidget *m_legend;
+   QLabel *m_hint;
+   QLabel *m_address, *m_counts, *m_run, *m_speed;
+   TaskRow *m_task;
+};
+
+} // namespace diatom::gui

@@ -1,0 +1,145 @@
+#include "render/scene_view.h"
+
+#include "render/design_overlay.h"
+
+#include <algorithm>
+
+namespace diatom::render {
+
+namespace {
+
+std::int64_t numberOf(const std::vector<Index> &sorted, Index i)
+{
+   const auto found = std::lower_bound(sorted.begin(), sorted.end(), i);
+   return found != sorted.end() && *found == i ? found - sorted.begin() : -1;
+}
+
+} // namespace
+
+void SceneView::setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool composites, bool grid)
+{
+   m_hierarchy = std::move(hierarchy);
+   m_mesh = {};
+   m_boxes.clear();
+   m_grid.clear();
+   m_bounds.setEmpty();
+   m_frame.reset();
+   m_newMesh = true;
+   m_boxed = false;
+   if (!m_hierarchy)
+      return;
+   const Lattice &lattice = m_hierarchy->lattice();
+   const Model &model = m_hierarchy->model();
+   if (grid)
+      m_grid = baseGrid(lattice, m_hierarchy->bounds(), {70, 85, 100, 110});
+   const Job job;
+   const bool tooMany = m_hierarchy->cells() > kCellBudget;
+   m_boxed = (composites || tooMany) && model.root.instances.count() > 0;
+   std::shared_ptr<const Lattice> alias(m_hierarchy, &lattice);
+   const Hierarchy own(alias, m_boxed ? ownCells(model) : model);
+   if (own.cells() <= kCellBudget) {
+      if (auto mesh = buildCellMesh(own, job, kCellBudget))
+         m_mesh = std::move(*mesh);
+   } else {
+      m_boxed = true;
+      m_boxes = blockBoxes(lattice, model);
+   }
+   if (m_boxed) {
+      const auto boxes = compositeBoxes(lattice, model);
+      m_boxes.insert(m_boxes.end(), boxes.begin(), boxes.end());
+   }
+   m_bounds = worldBounds(lattice, m_hierarchy->bounds());
+}
+
+void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement)
+{
+   if (frame && (!m_frame || m_frame->indices != frame->indices)) {
+      m_sceneCell.clear();
+      for (const Index i : m_mesh.cells)
+         m_sceneCell.push_back(numberOf(*frame->indices, i));
+   }
+   m_frame = std::move(frame);
+   m_byDisplacement = byDisplacement;
+   m_newFrame = true;
+}
+
+void SceneView::upload(Renderer &renderer)
+{
+   if (m_newMesh) {
+      renderer.setCells(m_mesh);
+      renderer.setBoxes(m_boxes);
+      renderer.setGrid(m_grid);
+   }
+   if (m_newMesh || m_newFrame) {
+      poses(renderer);
+      colors(renderer);
+   }
+   m_newMesh = m_newFrame = false;
+}
+
+void SceneView::poses(Renderer &renderer)
+{
+   if (!m_frame) {
+      renderer.setPoses({}, {});
+      return;
+   }
+   std::vector<float> position = m_mesh.position, turn(position.size(), 0.0f);
+   for (std::size_t slot = 0; slot < m_mesh.cells.size(); ++slot) {
+      turn[4 * slot] = 1;
+      const std::int64_t cell = m_sceneCell[slot];
+      if (cell < 0)
+         continue;
+      const auto c = static_cast<std::size_t>(cell);
+      for (std::size_t i = 0; i < 3; ++i)
+         position[4 * slot + i] =
+             static_cast<float>(m_frame->frame.position[3 * c + i] - m_mesh.anchor[long(i)]);
+      for (std::size_t i = 0; i < 4; ++i)
+         turn[4 * slot + i] = static_cast<float>(m_frame->frame.rotation[4 * c + i]);
+   }
+   renderer.setPoses(position, turn);
+}
+
+void SceneView::colors(Renderer &renderer)
+{
+   if (!m_hierarchy)
+      return;
+   const Model &model = m_hierarchy->model();
+   std::vector<Rgba> colors;
+   colors.reserve(m_mesh.cells.size());
+   for (std::size_t slot = 0; slot < m_mesh.cells.size(); ++slot) {
+      const std::int64_t cell = m_frame && m_byDisplacement ? m_sceneCell[slot] : -1;
+      if (cell >= 0) {
+         const double value = m_frame->displacement[static_cast<std::size_t>(cell)];
+         colors.push_back(fieldColor(m_frame->highest > 0 ? value / m_frame->highest : 0));
+         continue;
+      }
+      const auto &rgb = model.material(m_mesh.material[slot]).color;
+      colors.push_back({rgb[0], rgb[1], rgb[2], 255});
+   }
+   renderer.setColors(colors);
+}
+
+Bounds SceneView::reach() const
+{
+   Bounds bounds = m_bounds;
+   for (const Line &line : m_grid) {
+      bounds.extend(line.a);
+      bounds.extend(line.b);
+   }
+   if (!m_bounds.isEmpty()) { // room for what a simulation moves
+      const Vec3 margin = m_bounds.diagonal();
+      bounds.extend(m_bounds.min() - margin);
+      bounds.extend(m_bounds.max() + margin);
+   }
+   return bounds;
+}
+
+Vec3 SceneView::position(Index cell) const
+{
+   if (m_frame)
+      if (const std::int64_t c = numberOf(*m_frame->indices, cell); c >= 0)
+         return Eigen::Map<const Vec3>(m_frame->frame.position.data() + 3 * c);
+   return m_hierarchy ? m_hierarchy->lattice().position(cell) : Vec3::Zero();
+}
+
+} // namespace diatom::render

@@ -1,0 +1,58 @@
+// What is shown of a design: meshes from its hierarchy, colours, and the poses of a simulation.
+#pragma once
+
+#include "render/cell_mesh.h"
+#include "render/composite_boxes.h"
+#include "render/renderer.h"
+#include "scene/simulation.h"
+
+#include <memory>
+#include <vector>
+
+namespace diatom::render {
+
+/// A moment of a simulation. Immutable; shared between the one who steps and the one who draws.
+struct Moment
+{
+   std::shared_ptr<const std::vector<Index>> indices; // of the scene's cells, sorted
+   Frame frame;
+   std::vector<double> displacement; // m, per cell
+   double highest = 0;               // largest displacement of the run so far, m
+   double realTimeFactor = 0;        // simulated over wall time, lately; 0 = not known
+};
+
+class SceneView
+{
+public:
+   /// Above this many logical cells composites are drawn as boxes, whatever the view.
+   static constexpr std::uint64_t kCellBudget = 2'000'000;
+
+   void setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool composites, bool grid);
+   void setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement);
+   /// Hands over what changed since the last call; needs the renderer's context.
+   void upload(Renderer &renderer);
+
+   const Bounds &bounds() const { return m_bounds; }
+   /// Of content and base plane: what must not be clipped.
+   Bounds reach() const;
+   /// Centre of a cell as drawn now.
+   Vec3 position(Index cell) const;
+   std::uint64_t faces() const { return m_mesh.exposedFaces(); }
+   bool boxed() const { return m_boxed; }
+
+private:
+   void poses(Renderer &renderer);
+   void colors(Renderer &renderer);
+
+   std::shared_ptr<const Hierarchy> m_hierarchy;
+   CellMesh m_mesh;
+   std::vector<SolidBox> m_boxes;
+   std::vector<Line> m_grid;
+   Bounds m_bounds;
+   std::shared_ptr<const Moment> m_frame;
+   std::vector<std::int64_t> m_sceneCell; // by slot, of the frame's scene
+   bool m_byDisplacement = false, m_boxed = false;
+   bool m_newMesh = false, m_newFrame = false;
+};
+
+} // namespace diatom::render
