@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "document/document.h"
 #include "document/files.h"
+#include "scene/networks.h"
 #include "tests/support/support.h"
 
 #include <random>
@@ -344,6 +345,9 @@ private slots:
          const Document document(test::catalogue(), opened->design);
          DIATOM_VERIFY_OK(document.hierarchy());
          QVERIFY((*document.hierarchy())->cells() > 10);
+         const auto networks = findNetworks(**document.hierarchy(), opened->design.setup, Job());
+         QVERIFY2(networks.problems.empty(),
+                  networks.problems.empty() ? "" : networks.problems[0].text.c_str());
          auto log = entry.path();
          const auto text = readFile(log.replace_extension(".log"));
          DIATOM_VERIFY_OK(text);
