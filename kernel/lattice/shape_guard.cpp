@@ -117,7 +117,7 @@ Fault ShapeGuard::convex()
    for (const Vec3 &v : m_shape.vertices)
       outer = std::max(outer, v.norm());
    const double tolerance = kTolerance * outer;
-   double inner = outer;
+   double inner = outer, sixfold = 0; // six times the volume, by the divergence theorem
    for (std::size_t f = 0; f < m_shape.faces.size(); ++f) {
       const auto &face = m_shape.faces[f];
       const auto corner = [&](std::size_t k) {
@@ -126,7 +126,7 @@ Fault ShapeGuard::convex()
       Vec3 normal = Vec3::Zero(); // twice the area, by Newell
       for (std::size_t k = 0; k < face.size(); ++k)
          normal += corner(k).cross(corner(k + 1));
-      m_shape.volume += normal.dot(corner(0)) / 6;
+      sixfold += normal.dot(corner(0));
       normal.normalize();
       for (const Vec3 &v : m_shape.vertices)
          if (!(normal.dot(v - corner(0)) <= tolerance))
@@ -141,6 +141,7 @@ Fault ShapeGuard::convex()
       }
       inner = std::min(inner, normal.dot(corner(0)));
    }
+   m_shape.volume = sixfold / 6;
    if (!(inner > tolerance && m_shape.volume > 0))
       return fmt::format("shape {} has no volume about its centre", m_number);
    m_checked.inner = inner;

@@ -15,6 +15,7 @@ private slots:
    void seeTheBeamMove();
    void firstCells();
    void aLatticeThatIsNotCubes();
+   void aFaceWithoutNeighbourSaysSo();
 };
 
 void JourneysTest::seeTheBeamMove()
@@ -30,8 +31,13 @@ void JourneysTest::seeTheBeamMove()
    auto *legend = studio.window.findChild<gui::LegendWidget *>("legend");
    QVERIFY(!legend->isVisible());
 
-   const Index tip{7, 3, 0}; // of the flexible beam
-   QVERIFY(!studio.window.session().hierarchy()->at(tip).empty());
+   Index tip;
+   studio.window.session().hierarchy()->visit(studio.window.session().hierarchy()->bounds(),
+                                              [&](Index i, Cell) {
+                                                 if (i.x > tip.x)
+                                                    tip = i;
+                                                 return true;
+                                              });
    const double pitch = studio.window.session().design().model.lattice.pitch;
    const double rest = studio.view().cellPosition(tip).z();
    studio.view().setFocus();
@@ -144,83 +150,73 @@ void JourneysTest::aLatticeThatIsNotCubes()
 {
    Studio studio;
    QVERIFY(studio.ready());
-   QVERIFY(studio.choose({"menu.file", "menu.new"}, "file.new.org.diatom_cad.lattice.kelvin"));
+   QVERIFY(studio.choose({"menu.file", "menu.new"}, "file.new.org.diatom_cad.lattice.kelvin_body_centred"));
    QTRY_COMPARE(studio.window.session().design().model.lattice.id,
-                std::string("org.diatom_cad.lattice.kelvin"));
+                std::string("org.diatom_cad.lattice.kelvin_body_centred"));
    QVERIFY(studio.settle());
    studio.click(*studio.view().screenPosBase({0, 0, 0}));
    QTRY_COMPARE(studio.cells(), std::uint64_t(1));
    const Index first{};
    QVERIFY(!studio.window.session().hierarchy()->at(first).empty());
 
-   // Held on to: each edit makes a new hierarchy, the lattice lives as long as one of them.
-   const auto hierarchy = studio.window.session().hierarchy();
-   const Lattice &lattice = hierarchy->lattice();
+   const Lattice &lattice = studio.window.session().hierarchy()->lattice();
    const Shape &shape = lattice.shape(lattice.site(first));
    std::set<Index> neighbours;
+   int hexagons = 0, squares = 0;
    for (const Link &link : lattice.links(lattice.site(first)))
-      neighbours.insert(first + link.offset);
-   QCOMPARE(neighbours.size(),
-            std::size_t(6)); // this Kelvin lattice is simple cubic: its squares meet, its hexagons do not
+      if (link.contact == Contact::face) {
+         neighbours.insert(first + link.offset);
+         (shape.faces[std::size_t(link.feature)].size() == 6 ? hexagons : squares)++;
+      }
+   QCOMPARE(hexagons, 8);
+   QCOMPARE(squares, 6);
 
-   // Hovers a face of so many corners that the pointer can reach; nothing when there is none.
-   const auto hoverFace = [&](std::size_t corners) -> std::optional<QPointF> {
+   // A face of so many corners that the pointer can reach, i.e. hovering its middle gives that very port.
+   const auto hoverFace = [&](std::size_t corners) {
       for (int face = 0; face < static_cast<int>(shape.faces.size()); ++face) {
          if (shape.faces[std::size_t(face)].size() != corners)
             continue;
-         const QPointF at = *studio.view().screenPos(first, Contact::face, face);
-         studio.moveTo(at);
+         studio.moveTo(*studio.view().screenPos(first, Contact::face, face));
          const gui::Ghost &ghost = studio.view().ghost();
-         if (ghost.visible && !ghost.port.occupied && ghost.port.cell == first && ghost.port.feature == face)
-            return at;
+         if (ghost.visible && ghost.cell && ghost.port.cell == first && ghost.port.feature == face)
+            return true;
       }
-      return std::nullopt;
+      return false;
    };
-   // A hexagon is a dead end, and says so.
-   auto at = hoverFace(6);
-   QVERIFY(at);
-   QCOMPARE(studio.view().ghost().corners, 6);
-   QVERIFY(!studio.view().ghost().cell);
-   QCOMPARE(studio.label("hint"), QString("no neighbour here"));
-   QVERIFY(studio.settle());
-   const QImage hatched = studio.picture();
-   studio.click(*at);
-   QVERIFY(studio.settle());
-   QCOMPARE(studio.cells(), std::uint64_t(1));
-   studio.leave();
-   QVERIFY(studio.settle());
-   QVERIFY(studio.picture() != hatched);
-   // A square leads on.
-   at = hoverFace(4);
-   QVERIFY(at);
-   QCOMPARE(studio.view().ghost().corners, 4);
-   const Index expected = *studio.view().ghost().cell;
-   QVERIFY(neighbours.count(expected) == 1);
-   QCOMPARE(studio.label("status.address"),
-            QString("(0,0,0) face %1").arg(studio.view().ghost().port.feature));
-   studio.click(*at);
-   std::uint64_t count = 2;
-   QTRY_COMPARE(studio.cells(), count);
-   QVERIFY(!studio.window.session().hierarchy()->at(expected).empty());
+   QPointF at;
+   std::uint64_t count = 1;
+   for (const std::size_t corners : {std::size_t(6), std::size_t(4)}) {
+      QVERIFY(hoverFace(corners));
+      QCOMPARE(studio.view().ghost().corners, int(corners));
+      QVERIFY(neighbours.count(*studio.view().ghost().cell) == 1);
+      const Index expected = *studio.view().ghost().cell;
+      QVERIFY(studio.label("status.address")
+                  .contains(QString("face %1").arg(studio.view().ghost().port.feature)));
+      at = *studio.view().screenPos(first, Contact::face, studio.view().ghost().port.feature);
+      studio.click(at);
+      ++count;
+      QTRY_COMPARE(studio.cells(), count);
+      QVERIFY(!studio.window.session().hierarchy()->at(expected).empty());
+   }
 
    // The wheel leads on to a face that looks away; its ghost shines through the cells in front of it.
-   at = hoverFace(4);
-   QVERIFY(at);
+   QVERIFY(hoverFace(6));
+   at = *studio.view().screenPos(first, Contact::face, studio.view().ghost().port.feature);
    const Vec3 toEye = studio.view().camera().backward();
    const auto looksAway = [&] {
       const Vec3 out = lattice.position(*studio.view().ghost().port.neighbour) - lattice.position(first);
-      return out.normalized().dot(toEye) < -0.3;
+      return out.normalized().dot(toEye) < -0.5;
    };
    int turns = 0;
    for (; turns < 14 && !looksAway(); ++turns)
-      studio.wheel(*at, 1, Qt::AltModifier);
+      studio.wheel(at, 1, Qt::AltModifier);
    QVERIFY(looksAway());
    const Index hidden = *studio.view().ghost().cell;
    QVERIFY(neighbours.count(hidden) == 1);
    QVERIFY(studio.settle());
    const QImage shown = studio.picture();
    const QPoint middle = (studio.view().screenPos(hidden)->toPoint());
-   studio.click(*at);
+   studio.click(at);
    ++count;
    QTRY_COMPARE(studio.cells(), count);
    QVERIFY(!studio.window.session().hierarchy()->at(hidden).empty());
@@ -236,6 +232,56 @@ void JourneysTest::aLatticeThatIsNotCubes()
       for (int dy = -12; dy <= 12; ++dy)
          changed += shown.pixel(middle + QPoint(dx, dy)) != bare.pixel(middle + QPoint(dx, dy));
    QVERIFY2(changed > 60, qPrintable(QString::number(changed)));
+}
+
+void JourneysTest::aFaceWithoutNeighbourSaysSo()
+{
+   Studio studio;
+   QVERIFY(studio.ready());
+   // On the simple cubic Kelvin lattice squares meet and hexagons face holes.
+   QVERIFY(studio.choose({"menu.file", "menu.new"}, "file.new.org.diatom_cad.lattice.kelvin"));
+   QTRY_COMPARE(studio.window.session().design().model.lattice.id,
+                std::string("org.diatom_cad.lattice.kelvin"));
+   QVERIFY(studio.settle());
+   studio.click(*studio.view().screenPosBase({0, 0, 0}));
+   QTRY_COMPARE(studio.cells(), std::uint64_t(1));
+   const auto hierarchy = studio.window.session().hierarchy(); // keeps the lattice alive through edits
+   const auto &faces = hierarchy->lattice().shape(0).faces;
+   const auto hoverFace = [&](std::size_t corners) -> std::optional<QPointF> {
+      for (int face = 0; face < static_cast<int>(faces.size()); ++face) {
+         if (faces[std::size_t(face)].size() != corners)
+            continue;
+         const QPointF at = *studio.view().screenPos({}, Contact::face, face);
+         studio.moveTo(at);
+         const gui::Ghost &ghost = studio.view().ghost();
+         if (ghost.visible && ghost.port.cell == Index{} && !ghost.port.base && ghost.port.feature == face)
+            return at;
+      }
+      return std::nullopt;
+   };
+   const auto hexagon = hoverFace(6);
+   QVERIFY(hexagon);
+   QCOMPARE(studio.view().ghost().corners, 6);
+   QVERIFY(!studio.view().ghost().cell);
+   QCOMPARE(studio.label("hint"), QString("no neighbour here"));
+   QVERIFY(studio.settle());
+   const QImage hatched = studio.picture();
+   studio.click(*hexagon);
+   QVERIFY(studio.settle());
+   QCOMPARE(studio.cells(), std::uint64_t(1));
+   studio.leave();
+   QVERIFY(studio.settle());
+   QVERIFY(studio.picture() != hatched);
+
+   const auto square = hoverFace(4);
+   QVERIFY(square);
+   QCOMPARE(studio.view().ghost().corners, 4);
+   QCOMPARE(studio.label("status.address"),
+            QString("(0,0,0) face %1").arg(studio.view().ghost().port.feature));
+   const Index expected = *studio.view().ghost().cell;
+   studio.click(*square);
+   QTRY_COMPARE(studio.cells(), std::uint64_t(2));
+   QVERIFY(!studio.window.session().hierarchy()->at(expected).empty());
 }
 
 QTEST_MAIN(JourneysTest)

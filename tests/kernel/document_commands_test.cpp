@@ -35,10 +35,10 @@ std::uint64_t cells(const Document &document) { return (*document.hierarchy())->
 #define DO(command, arguments) QCOMPARE(run(d, command, arguments), std::string())
 #define REFUSED(command, arguments, says)                                                                    \
    do {                                                                                                      \
-      const auto before = d.design().hash();                                                                 \
+      const auto unchanged = d.design().hash();                                                                 \
       const auto message = run(d, command, arguments);                                                       \
       QVERIFY2(message.find(says) != std::string::npos, message.c_str());                                    \
-      QVERIFY(d.design().hash() == before);                                                                  \
+      QVERIFY(d.design().hash() == unchanged);                                                                  \
    } while (false)
 
 /// A random command of those that make sense on any lattice; many fail, which must change nothing.
