@@ -2,6 +2,7 @@
 
 #include "gui/icons.h"
 
+#include <QShortcut>
 #include <QToolButton>
 #include <QVBoxLayout>
 
@@ -49,12 +50,15 @@ void Hotbar::rebuild()
       button->setAutoRaise(true);
       button->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
       button->setFocusPolicy(Qt::TabFocus);
-      if (slot <= 9)
-         button->setShortcut(QKeySequence(QString::number(slot)));
-      connect(button, &QToolButton::clicked, this, [this, index] {
+      const auto take = [this, index] {
          m_session->setMaterial(index);
          mark();
-      });
+      };
+      connect(button, &QToolButton::clicked, this, take);
+      if (slot <= 9) { // not the button's own shortcut, which acts only after showing a press
+         auto *shortcut = new QShortcut(QKeySequence(QString::number(slot)), button);
+         connect(shortcut, &QShortcut::activated, this, take);
+      }
       m_layout->addWidget(button);
    }
    m_layout->addStretch();

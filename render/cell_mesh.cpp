@@ -203,7 +203,8 @@ Bounds worldBounds(const Lattice &lattice, const Box &box)
    return Bounds(bounds.min() - margin, bounds.max() + margin);
 }
 
-Result<CellMesh> buildCellMesh(const Hierarchy &hierarchy, const Job &job, std::uint64_t limit)
+Result<CellMesh> buildCellMesh(const Hierarchy &hierarchy, const Job &job, std::uint64_t limit,
+                               Covered covered)
 {
    const Lattice &lattice = hierarchy.lattice();
    if (hierarchy.cells() > limit)
@@ -232,7 +233,11 @@ Result<CellMesh> buildCellMesh(const Hierarchy &hierarchy, const Job &job, std::
    });
    if (!whole || job.cancelled())
       return Error{ErrorCode::cancelled, "Preparing the picture was cancelled."};
-   const auto masks = exposedFaces(lattice, cells, occupancy, job);
+   auto masks = exposedFaces(lattice, cells, occupancy, job);
+   if (covered == Covered::keptOnSurface)
+      for (std::size_t c = 0; c < cells.size(); ++c)
+         if (const std::size_t faces = lattice.shape(lattice.site(cells[c].index)).faces.size(); masks[c])
+            masks[c] = faces < 64 ? (std::uint64_t{1} << faces) - 1 : ~std::uint64_t{0};
    std::vector<std::uint64_t> slotMask;
    const auto chunkOf = fillSlots(mesh, lattice, cells, masks, slotMask);
    sortFaces(mesh, lattice, chunkOf, slotMask);

@@ -30,9 +30,14 @@ struct CellMesh
    std::uint64_t exposedFaces() const { return faces.size(); }
 };
 
+/// Whether faces that a neighbour covers are left out, or drawn for cells that show at all: cells that move
+/// apart open gaps through which those would be missed.
+enum class Covered { dropped, keptOnSurface };
+
 /// Expands up to `limit` logical cells; the caller checks Hierarchy::cells() first. Errors: more than that,
 /// cancelled.
-Result<CellMesh> buildCellMesh(const Hierarchy &hierarchy, const Job &job, std::uint64_t limit = 20'000'000);
+Result<CellMesh> buildCellMesh(const Hierarchy &hierarchy, const Job &job, std::uint64_t limit = 20'000'000,
+                               Covered covered = Covered::dropped);
 
 /// Box of the cells at the corners of an index box, in metres, with the cells' bodies.
 Bounds worldBounds(const Lattice &lattice, const Box &box);

@@ -19,7 +19,9 @@ std::int64_t numberOf(const std::vector<Index> &sorted, Index i)
 void SceneView::setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool composites, bool grid)
 {
    m_hierarchy = std::move(hierarchy);
+   m_own.reset();
    m_mesh = {};
+   m_whole = false;
    m_boxes.clear();
    m_grid.clear();
    m_bounds.setEmpty();
@@ -32,17 +34,18 @@ void SceneView::setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool compo
    const Model &model = m_hierarchy->model();
    if (grid)
       m_grid = baseGrid(lattice, m_hierarchy->bounds(), {70, 85, 100, 110});
-   const Job job;
    const bool tooMany = m_hierarchy->cells() > kCellBudget;
    m_boxed = (composites || tooMany) && model.root.instances.count() > 0;
-   std::shared_ptr<const Lattice> alias(m_hierarchy, &lattice);
-   const Hierarchy own(alias, m_boxed ? ownCells(model) : model);
-   if (own.cells() <= kCellBudget) {
-      if (auto mesh = buildCellMesh(own, job, kCellBudget))
-         m_mesh = std::move(*mesh);
+   m_own = m_hierarchy;
+   if (m_boxed)
+      m_own = std::make_shared<const Hierarchy>(std::shared_ptr<const Lattice>(m_hierarchy, &lattice),
+                                                ownCells(model));
+   if (m_own->cells() <= kCellBudget) {
+      buildMesh(Covered::dropped);
    } else {
       m_boxed = true;
       m_boxes = blockBoxes(lattice, model);
+      m_own.reset();
    }
    if (m_boxed) {
       const auto boxes = compositeBoxes(lattice, model);
@@ -51,9 +54,22 @@ void SceneView::setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool compo
    m_bounds = worldBounds(lattice, m_hierarchy->bounds());
 }
 
+void SceneView::buildMesh(Covered covered)
+{
+   const Job job;
+   m_whole = covered == Covered::keptOnSurface;
+   m_newMesh = true;
+   m_sceneCell.clear();
+   if (auto mesh = buildCellMesh(*m_own, job, kCellBudget, covered))
+      m_mesh = std::move(*mesh);
+}
+
 void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement)
 {
-   if (frame && (!m_frame || m_frame->indices != frame->indices)) {
+   const bool whole = frame && m_mesh.cells.size() <= kWholeCellBudget;
+   if (m_own && whole != m_whole)
+      buildMesh(whole ? Covered::keptOnSurface : Covered::dropped);
+   if (frame && (m_sceneCell.empty() || !m_frame || m_frame->indices != frame->indices)) {
       m_sceneCell.clear();
       for (const Index i : m_mesh.cells)
          m_sceneCell.push_back(numberOf(*frame->indices, i));

@@ -26,6 +26,8 @@ class SceneView
 public:
    /// Above this many logical cells composites are drawn as boxes, whatever the view.
    static constexpr std::uint64_t kCellBudget = 2'000'000;
+   /// Up to this many drawn cells a moving scene shows covered faces too.
+   static constexpr std::size_t kWholeCellBudget = 50'000;
 
    void setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool composites, bool grid);
    void setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement);
@@ -41,11 +43,14 @@ public:
    bool boxed() const { return m_boxed; }
 
 private:
+   void buildMesh(Covered covered);
    void poses(Renderer &renderer);
    void colors(Renderer &renderer);
 
    std::shared_ptr<const Hierarchy> m_hierarchy;
+   std::shared_ptr<const Hierarchy> m_own; // what is drawn cell by cell
    CellMesh m_mesh;
+   bool m_whole = false; // the mesh has covered faces
    std::vector<SolidBox> m_boxes;
    std::vector<Line> m_grid;
    Bounds m_bounds;

@@ -15,6 +15,7 @@ private slots:
    void seeTheBeamMove();
    void firstCells();
    void aLatticeThatIsNotCubes();
+   void aFaceWithoutNeighbourSaysSo();
 };
 
 void JourneysTest::seeTheBeamMove()
@@ -231,6 +232,56 @@ void JourneysTest::aLatticeThatIsNotCubes()
       for (int dy = -12; dy <= 12; ++dy)
          changed += shown.pixel(middle + QPoint(dx, dy)) != bare.pixel(middle + QPoint(dx, dy));
    QVERIFY2(changed > 60, qPrintable(QString::number(changed)));
+}
+
+void JourneysTest::aFaceWithoutNeighbourSaysSo()
+{
+   Studio studio;
+   QVERIFY(studio.ready());
+   // On the simple cubic Kelvin lattice squares meet and hexagons face holes.
+   QVERIFY(studio.choose({"menu.file", "menu.new"}, "file.new.org.diatom_cad.lattice.kelvin"));
+   QTRY_COMPARE(studio.window.session().design().model.lattice.id,
+                std::string("org.diatom_cad.lattice.kelvin"));
+   QVERIFY(studio.settle());
+   studio.click(*studio.view().screenPosBase({0, 0, 0}));
+   QTRY_COMPARE(studio.cells(), std::uint64_t(1));
+   const auto hierarchy = studio.window.session().hierarchy(); // keeps the lattice alive through edits
+   const auto &faces = hierarchy->lattice().shape(0).faces;
+   const auto hoverFace = [&](std::size_t corners) -> std::optional<QPointF> {
+      for (int face = 0; face < static_cast<int>(faces.size()); ++face) {
+         if (faces[std::size_t(face)].size() != corners)
+            continue;
+         const QPointF at = *studio.view().screenPos({}, Contact::face, face);
+         studio.moveTo(at);
+         const gui::Ghost &ghost = studio.view().ghost();
+         if (ghost.visible && ghost.port.cell == Index{} && !ghost.port.base && ghost.port.feature == face)
+            return at;
+      }
+      return std::nullopt;
+   };
+   const auto hexagon = hoverFace(6);
+   QVERIFY(hexagon);
+   QCOMPARE(studio.view().ghost().corners, 6);
+   QVERIFY(!studio.view().ghost().cell);
+   QCOMPARE(studio.label("hint"), QString("no neighbour here"));
+   QVERIFY(studio.settle());
+   const QImage hatched = studio.picture();
+   studio.click(*hexagon);
+   QVERIFY(studio.settle());
+   QCOMPARE(studio.cells(), std::uint64_t(1));
+   studio.leave();
+   QVERIFY(studio.settle());
+   QVERIFY(studio.picture() != hatched);
+
+   const auto square = hoverFace(4);
+   QVERIFY(square);
+   QCOMPARE(studio.view().ghost().corners, 4);
+   QCOMPARE(studio.label("status.address"),
+            QString("(0,0,0) face %1").arg(studio.view().ghost().port.feature));
+   const Index expected = *studio.view().ghost().cell;
+   studio.click(*square);
+   QTRY_COMPARE(studio.cells(), std::uint64_t(2));
+   QVERIFY(!studio.window.session().hierarchy()->at(expected).empty());
 }
 
 QTEST_MAIN(JourneysTest)
