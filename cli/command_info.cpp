@@ -11,6 +11,55 @@ namespace {
 
 nlohmann::ordered_json indexJson(Index i) { return {i.x, i.y, i.z}; }
 
+nlohmann::ordered_json boundsJson(const Box &bounds)
+{
+   if (bounds.empty())
+      return nullptr;
+   return {indexJson(bounds.min), indexJson(bounds.max)};
+}
+
+nlohmann::ordered_json materialsJson(const Hierarchy &hierarchy)
+{
+   auto materials = nlohmann::ordered_json::object();
+   const auto counts = hierarchy.countByMaterial();
+   for (std::size_t m = 1; m < counts.size(); ++m)
+      if (counts[m] > 0)
+         materials[hierarchy.model().material(static_cast<MaterialIndex>(m)).id] = counts[m];
+   return materials;
+}
+
+/// Super-cells among a definition's own cells: runs are counted at their first cell.
+std::uint64_t supercells(const Body &body)
+{
+   std::uint64_t count = 0;
+   body.cells.visit([&](Index, Cell cell) {
+      count += (cell.joins & Cell::kJoinsPrevious) == 0 ? 1 : 0;
+      return true;
+   });
+   return count;
+}
+
+/// What each composite holds, fully expanded; its own super-cells where the lattice has them.
+nlohmann::ordered_json definitionsJson(const Context::Input &input)
+{
+   auto rows = nlohmann::ordered_json::array();
+   const Model &model = input.hierarchy->model();
+   for (const auto &[id, definition] : model.definitions) {
+      Model alone = model;
+      alone.root = definition->body;
+      const Hierarchy hierarchy(input.lattice, std::move(alone), input.hierarchy.get());
+      rows.push_back({{"id", definition->id},
+                      {"name", definition->name},
+                      {"cells", hierarchy.cells()},
+                      {"instances", definition->body.instances.count()},
+                      {"bounds", boundsJson(hierarchy.bounds())},
+                      {"materials", materialsJson(hierarchy)}});
+      if (input.lattice->hasSupercells())
+         rows.back()["supercells"] = supercells(definition->body);
+   }
+   return rows;
+}
+
 void showInfo(Context &context, const std::string &file)
 {
    const auto input = context.open(file);
@@ -18,31 +67,23 @@ void showInfo(Context &context, const std::string &file)
       return;
    const Hierarchy &hierarchy = *input->hierarchy;
    const Model &model = hierarchy.model();
-   const Box bounds = hierarchy.bounds();
-   auto materials = nlohmann::ordered_json::object();
-   const auto counts = hierarchy.countByMaterial();
-   for (std::size_t m = 1; m < counts.size(); ++m)
-      if (counts[m] > 0)
-         materials[model.material(static_cast<MaterialIndex>(m)).id] = counts[m];
    const Design &design = input->opened.design;
-   nlohmann::ordered_json info = {{"name", design.name},
-                                  {"format", input->opened.format},
-                                  {"lattice", model.lattice.id},
-                                  {"pitch_m", model.lattice.pitch},
-                                  {"cells", hierarchy.cells()},
-                                  {"stored_cells", hierarchy.stored()},
-                                  {"composites", model.definitions.size()},
-                                  {"depth", hierarchy.depth()},
-                                  {"bounds", nullptr},
-                                  {"materials", materials},
-                                  {"mass_kg", hierarchy.mass().mass},
-                                  {"supports", design.setup.supports.size()},
-                                  {"loads", design.setup.loads.size()},
-                                  {"sources", design.setup.sources.size()},
-                                  {"hash", design.hash().text()}};
-   if (!bounds.empty())
-      info["bounds"] = {indexJson(bounds.min), indexJson(bounds.max)};
-   context.print(info);
+   context.print({{"name", design.name},
+                  {"format", input->opened.format},
+                  {"lattice", model.lattice.id},
+                  {"pitch_m", model.lattice.pitch},
+                  {"cells", hierarchy.cells()},
+                  {"stored_cells", hierarchy.stored()},
+                  {"composites", model.definitions.size()},
+                  {"depth", hierarchy.depth()},
+                  {"bounds", boundsJson(hierarchy.bounds())},
+                  {"materials", materialsJson(hierarchy)},
+                  {"mass_kg", hierarchy.mass().mass},
+                  {"definitions", definitionsJson(*input)},
+                  {"supports", design.setup.supports.size()},
+                  {"loads", design.setup.loads.size()},
+                  {"sources", design.setup.sources.size()},
+                  {"hash", design.hash().text()}});
 }
 
 } // namespace

@@ -130,6 +130,15 @@ Status finishFiles(const Simulation &simulation, const Model &model, const Optio
    return options.state.empty() || !ran ? Status() : writeState(simulation, model, options.state, job);
 }
 
+/// Effects for people: one line each.
+nlohmann::ordered_json effectLines(const std::vector<Effect> &effects)
+{
+   auto lines = nlohmann::ordered_json::object();
+   for (const Effect &effect : effects)
+      lines[effect.name] = fmt::format("{}: {}", effect.on ? "on" : "off", effect.why);
+   return lines;
+}
+
 struct Started
 {
    std::unique_ptr<Simulation> simulation;
@@ -188,13 +197,16 @@ void simulate(const Options &options, Context &context)
                                        recorder ? &*recorder : nullptr, ran, calm);
        !kept)
       return context.fail(kept.error());
-   const auto object = summary(simulation, started->probes, status, calm);
-   if (object)
-      context.print(*object);
+   if (!ran && std::string_view(status) == "failed")
+      return context.fail(ran.error());
+   auto object = summary(simulation, started->probes, status, calm);
+   if (!object)
+      return context.fail(object.error());
+   if (!context.json)
+      (*object)["effects"] = effectLines(simulation.scene().effects());
+   context.print(*object);
    if (!ran)
       context.fail(ran.error());
-   else if (!object)
-      context.fail(object.error());
 }
 
 } // namespace

@@ -13,7 +13,7 @@ Edit::Edit(CommandContext &context, const char *command, const nlohmann::json &a
    m_arguments.object();
    if (const auto *entry = findCommand(command); entry && m_json.is_object())
       for (const auto &[key, value] : m_json.items()) {
-         const auto known = [&key](const CommandParameter &p) { return key == p.name; };
+         const auto known = [&name = key](const CommandParameter &p) { return name == p.name; };
          if (std::none_of(entry->parameters.begin(), entry->parameters.end(), known))
             fail(ErrorCode::usage,
                  fmt::format("it has no argument \"{}\"; `diatom commands` lists them", key));

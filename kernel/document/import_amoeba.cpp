@@ -167,7 +167,7 @@ private:
                  "friction", "lattice"});
       auto &setup = m_opened.design.setup;
       readGravity(sim);
-      setup.step = sim.numberOr("dtSolver", 0, 0, 1e12) * 1e-6; // microseconds
+      setup.step = sim.numberOr("dtSolver", 0, 0, 1e12) / 1e6; // microseconds
       if (setup.step > 0)
          note(fmt::format("the file asks for steps of {} s; set the step to 0 for the solver's stable step",
                           numberText(setup.step)));

@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <sstream>
 
 namespace diatom {
@@ -187,9 +188,14 @@ Catalogue::~Catalogue() = default;
 std::shared_ptr<const Catalogue> Catalogue::find(const std::vector<fs::path> &folders)
 {
    std::shared_ptr<Catalogue> catalogue(new Catalogue);
+   std::set<fs::path> seen; // one folder may be reached by several search paths
    for (const fs::path &folder : folders)
-      for (const fs::path &plugin : pluginFolders(folder))
-         catalogue->m_candidates.push_back(examine(plugin));
+      for (const fs::path &plugin : pluginFolders(folder)) {
+         std::error_code error;
+         const fs::path real = fs::canonical(plugin, error);
+         if (error || seen.insert(real).second)
+            catalogue->m_candidates.push_back(examine(plugin));
+      }
    settleDuplicates(catalogue->m_candidates);
    for (const Candidate &candidate : catalogue->m_candidates)
       if (candidate.accepted)

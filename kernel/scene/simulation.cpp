@@ -205,8 +205,8 @@ Error Simulation::Self::diverged(const diatom_step_result &result) const
            ? fmt::format("the step of {} s is above the largest stable one, {} s: use --step auto",
                          numberText(step), numberText(stableStep))
            : fmt::format("halve the step of {} s or add damping", numberText(step));
-   return {ErrorCode::unstable,
-           fmt::format("the simulation diverged at t = {} s {}; {}", numberText(result.time), where, remedy)};
+   return {ErrorCode::unstable, fmt::format("the simulation diverged after t = {} s {}; {}",
+                                            numberText(result.time), where, remedy)};
 }
 
 Simulation::Simulation() : m_self(std::make_unique<Self>()) {}

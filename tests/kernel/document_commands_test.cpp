@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "document/document.h"
 #include "document/files.h"
+#include "scene/networks.h"
 #include "tests/support/support.h"
 
 #include <random>
@@ -35,10 +36,10 @@ std::uint64_t cells(const Document &document) { return (*document.hierarchy())->
 #define DO(command, arguments) QCOMPARE(run(d, command, arguments), std::string())
 #define REFUSED(command, arguments, says)                                                                    \
    do {                                                                                                      \
-      const auto unchanged = d.design().hash();                                                                 \
+      const auto hashBefore = d.design().hash();                                                             \
       const auto message = run(d, command, arguments);                                                       \
       QVERIFY2(message.find(says) != std::string::npos, message.c_str());                                    \
-      QVERIFY(d.design().hash() == unchanged);                                                                  \
+      QVERIFY(d.design().hash() == hashBefore);                                                              \
    } while (false)
 
 /// A random command of those that make sense on any lattice; many fail, which must change nothing.
@@ -344,6 +345,9 @@ private slots:
          const Document document(test::catalogue(), opened->design);
          DIATOM_VERIFY_OK(document.hierarchy());
          QVERIFY((*document.hierarchy())->cells() > 10);
+         const auto networks = findNetworks(**document.hierarchy(), opened->design.setup, Job());
+         QVERIFY2(networks.problems.empty(),
+                  networks.problems.empty() ? "" : networks.problems[0].text.c_str());
          auto log = entry.path();
          const auto text = readFile(log.replace_extension(".log"));
          DIATOM_VERIFY_OK(text);

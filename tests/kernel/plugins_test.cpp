@@ -48,6 +48,7 @@ private slots:
    void brokenManifestsAreNamed_data();
    void brokenManifestsAreNamed();
    void ofTwoVersionsTheHigherIsUsed();
+   void oneFolderReachedTwiceIsOneCandidate();
    void relativeSearchFoldersAreIgnored();
    void aHalfUpdatedInstallIsRefused();
    void aFileThatIsNoPluginIsRefused();
@@ -129,6 +130,13 @@ void PluginsTest::ofTwoVersionsTheHigherIsUsed()
    QVERIFY(catalogue->candidates()[0].accepted);
    QVERIFY(!catalogue->candidates()[1].accepted);
    QVERIFY(catalogue->candidates()[1].verdict.find("version 1.10.0") != std::string::npos);
+}
+
+void PluginsTest::oneFolderReachedTwiceIsOneCandidate()
+{
+   copyPlugin(root(), "good");
+   const auto catalogue = Catalogue::find({root(), root() / ".." / root().filename()});
+   QCOMPARE(catalogue->candidates().size(), std::size_t{1});
 }
 
 void PluginsTest::relativeSearchFoldersAreIgnored()

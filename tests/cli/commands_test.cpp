@@ -1,0 +1,267 @@
+// The command line as a user calls it: what each command prints and writes, and how it fails.
+#include "core/file.h"
+#include "support/support.h"
+
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+#include <QProcess>
+
+using namespace diatom;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Outcome
+{
+   int exit = -1;
+   QByteArray out, err;
+   QJsonDocument json() const { return QJsonDocument::fromJson(out); }
+   QJsonObject object() const { return json().object(); }
+};
+
+Outcome diatomRuns(const QStringList &arguments, const QByteArray &input = {})
+{
+   QProcess process;
+   process.start(QString::fromStdString((test::binaryDir() / "bin" / "diatom").string()), arguments);
+   if (!input.isEmpty())
+      process.write(input);
+   process.closeWriteChannel();
+   if (!process.waitForFinished(120000))
+      return {};
+   return {process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1,
+           process.readAllStandardOutput(), process.readAllStandardError()};
+}
+
+QString sample(const char *name) { return QString::fromStdString((test::samplesDir() / name).string()); }
+
+} // namespace
+
+class CommandsTest : public QObject
+{
+   Q_OBJECT
+private slots:
+   void init() { m_dir = std::make_unique<QTemporaryDir>(); }
+   void helpAndVersionGoToStandardOutput();
+   void everyCommandHasHelp();
+   void misuseExitsWithTwo();
+   void unreadableInputExitsWithThree();
+   void aPlaceThatCannotBeWrittenExitsWithFour();
+   void infoPrintsTheAgreedKeys();
+   void standardInputIsAFileToo();
+   void simulateReportsAndRecords();
+   void aStepThatCannotBeStableIsRefused();
+   void exportWritesOneFilePerMaterial();
+   void planWritesAProgram();
+   void renderWritesAPicture();
+   void convertKeepsTheDesign();
+   void doAndReplayMakeTheSameDesign();
+   void checkFindsAConflictAndExitsWithFive();
+   void pipelineDoesTheMainJob();
+   void everyPluginOfOursIsAccepted();
+
+private:
+   QString file(const char *name) const { return m_dir->filePath(name); }
+   std::unique_ptr<QTemporaryDir> m_dir;
+};
+
+void CommandsTest::helpAndVersionGoToStandardOutput()
+{
+   const Outcome help = diatomRuns({"--help"});
+   QCOMPARE(help.exit, 0);
+   QVERIFY(help.out.contains("Exit codes:"));
+   QVERIFY(help.err.isEmpty());
+   const Outcome version = diatomRuns({"--version"});
+   QCOMPARE(version.exit, 0);
+   QVERIFY(version.out.startsWith("0."));
+}
+
+void CommandsTest::everyCommandHasHelp()
+{
+   for (const char *command : {"info", "plugins", "lattices", "parts", "machines", "solvers", "convert",
+                               "export", "plan", "simulate", "circuit", "effects", "check", "render",
+                               "pipeline", "do", "commands", "replay", "bench"})
+   {
+      const Outcome help = diatomRuns({command, "--help"});
+      QVERIFY2(help.exit == 0 && help.out.contains("Usage"), command);
+   }
+}
+
+void CommandsTest::misuseExitsWithTwo()
+{
+   QCOMPARE(diatomRuns({}).exit, 2);
+   QCOMPARE(diatomRuns({"dance"}).exit, 2);
+   QCOMPARE(diatomRuns({"info"}).exit, 2);
+   QCOMPARE(diatomRuns({"simulate", sample("gripper.diatom")}).exit, 2); // until when?
+   QCOMPARE(diatomRuns({"export", sample("gripper.diatom"), file("x.docx")}).exit, 2);
+}
+
+void CommandsTest::unreadableInputExitsWithThree()
+{
+   const Outcome missing = diatomRuns({"info", file("absent.diatom")});
+   QCOMPARE(missing.exit, 3);
+   QVERIFY(missing.out.isEmpty());
+   QVERIFY(missing.err.contains("absent.diatom"));
+   QCOMPARE(diatomRuns({"info", "-"}, "{ this is no design").exit, 3);
+}
+
+void CommandsTest::aPlaceThatCannotBeWrittenExitsWithFour()
+{
+   const Outcome refused = diatomRuns({"export", sample("gripper.diatom"), file("no/folder/x.stl")});
+   QCOMPARE(refused.exit, 4);
+   QVERIFY(refused.err.contains("x.stl"));
+}
+
+void CommandsTest::infoPrintsTheAgreedKeys()
+{
+   const Outcome info = diatomRuns({"info", sample("capacitor-tower.diatom"), "--json"});
+   QCOMPARE(info.exit, 0);
+   const QJsonObject object = info.object();
+   for (const char *key : {"lattice", "pitch_m", "cells", "stored_cells", "composites", "depth", "bounds",
+                           "materials", "mass_kg"})
+      QVERIFY2(object.contains(key), key);
+   QVERIFY(object["depth"].toInt() > 1);
+   double sum = 0;
+   for (const QJsonValue count : object["materials"].toObject())
+      sum += count.toDouble();
+   QCOMPARE(sum, object["cells"].toDouble());
+}
+
+void CommandsTest::standardInputIsAFileToo()
+{
+   const auto bytes = readFile(sample("gripper.diatom").toStdString());
+   DIATOM_VERIFY_OK(bytes);
+   const Outcome piped = diatomRuns({"info", "-", "--json"}, QByteArray::fromStdString(*bytes));
+   QCOMPARE(piped.exit, 0);
+   QCOMPARE(piped.object()["hash"],
+            diatomRuns({"info", sample("gripper.diatom"), "--json"}).object()["hash"]);
+}
+
+void CommandsTest::simulateReportsAndRecords()
+{
+   const Outcome run = diatomRuns({"simulate", sample("bending-beam.diatom"), "--until", "0.01", "--probe",
+                                   "13,0,0:z", "--record", file("out.csv"), "--json"});
+   QCOMPARE(run.exit, 0);
+   const QJsonObject object = run.object();
+   for (const char *key : {"status", "steps", "step_s", "stable_step_s", "wall_s", "ns_per_cell_step",
+                           "effects", "energy", "momentum", "probes"})
+      QVERIFY2(object.contains(key), key);
+   QVERIFY(object["probes"].toObject()["13,0,0:z"].toDouble() < 0); // it falls
+   const auto record = readFile(file("out.csv").toStdString());
+   DIATOM_VERIFY_OK(record);
+   QVERIFY(record->find("13,0,0:z") != std::string::npos);
+   // The same bits on one thread.
+   const Outcome alone = diatomRuns({"simulate", sample("bending-beam.diatom"), "--until", "0.01", "--probe",
+                                     "13,0,0:z", "--record", file("one.csv"), "--threads", "1", "--json"});
+   QCOMPARE(*readFile(file("one.csv").toStdString()), *record);
+   QCOMPARE(alone.object()["probes"], object["probes"]);
+   QCOMPARE(alone.object()["energy"], object["energy"]);
+}
+
+void CommandsTest::aStepThatCannotBeStableIsRefused()
+{
+   const Outcome refused =
+       diatomRuns({"simulate", sample("bending-beam.diatom"), "--until", "0.01", "--step", "0.01"});
+   QVERIFY(refused.exit == 1 || refused.exit == 6);
+   QVERIFY2(refused.err.contains("step"), refused.err.constData());
+}
+
+void CommandsTest::exportWritesOneFilePerMaterial()
+{
+   QCOMPARE(diatomRuns({"export", sample("gripper.diatom"), file("g.stl"), "--each-material"}).exit, 0);
+   QVERIFY(fs::exists(file("g.structural.stl").toStdString()));
+   QVERIFY(fs::exists(file("g.actuator.stl").toStdString()));
+   QVERIFY(!fs::exists(file("g.stl").toStdString()));
+   QCOMPARE(diatomRuns({"export", sample("capacitor-tower.diatom"), file("b.stl"), "--as", "parts"}).exit, 0);
+   QVERIFY(fs::file_size(file("b.stl").toStdString()) > 84);
+}
+
+void CommandsTest::planWritesAProgram()
+{
+   const Outcome plan = diatomRuns({"plan", sample("capacitor-tower.diatom"), "--machine",
+                                    "org.diatom_cad.machine.gcode", "-o", file("t.ngc"), "--json"});
+   QCOMPARE(plan.exit, 0);
+   QVERIFY(plan.object()["placements"].toInt() > 0);
+   QVERIFY(plan.object()["path_m"].toDouble() > 0);
+   const auto program = readFile(file("t.ngc").toStdString());
+   DIATOM_VERIFY_OK(program);
+   QVERIFY(program->ends_with("M2\n"));
+}
+
+void CommandsTest::renderWritesAPicture()
+{
+   const Outcome drawn =
+       diatomRuns({"render", sample("octahedral-truss.diatom"), file("p.png"), "--size", "160x100"});
+   QCOMPARE(drawn.exit, 0);
+   const auto png = readFile(file("p.png").toStdString());
+   DIATOM_VERIFY_OK(png);
+   QVERIFY(png->starts_with("\x89PNG"));
+   QVERIFY(png->size() > 1000); // more than one colour
+}
+
+void CommandsTest::convertKeepsTheDesign()
+{
+   QCOMPARE(diatomRuns({"convert", sample("walker.diatom"), file("w.diatom")}).exit, 0);
+   QCOMPARE(diatomRuns({"info", file("w.diatom"), "--json"}).object()["hash"],
+            diatomRuns({"info", sample("walker.diatom"), "--json"}).object()["hash"]);
+}
+
+void CommandsTest::doAndReplayMakeTheSameDesign()
+{
+   const QByteArray log = R"({"command":"set-material","arguments":{"id":"a"}}
+{"command":"fill","arguments":{"box":[[0,0,0],[2,2,2]],"material":"a"}}
+)";
+   DIATOM_VERIFY_OK(writeFileAtomic(file("log").toStdString(), log.toStdString()));
+   QCOMPARE(diatomRuns({"replay", "new", file("log"), "-o", file("a.diatom")}).exit, 0);
+   QCOMPARE(
+       diatomRuns({"do", file("a.diatom"), "place", "cell=0,0,5", "material=a", "-o", file("b.diatom")}).exit,
+       0);
+   QCOMPARE(diatomRuns({"info", file("b.diatom"), "--json"}).object()["cells"].toInt(), 28);
+   const Outcome taken =
+       diatomRuns({"do", file("b.diatom"), "place", "cell=0,0,5", "material=a", "-o", file("c.diatom")});
+   QCOMPARE(taken.exit, 1);
+   QVERIFY(taken.err.contains("taken"));
+   QVERIFY(!fs::exists(file("c.diatom").toStdString()));
+}
+
+void CommandsTest::checkFindsAConflictAndExitsWithFive()
+{
+   QCOMPARE(diatomRuns({"check", sample("gripper.diatom")}).exit, 0);
+   // Two sources side by side drive one net.
+   const QByteArray log = R"({"command":"set-material","arguments":{"id":"s","role":"source"}}
+{"command":"fill","arguments":{"box":[[0,0,0],[1,0,0]],"material":"s"}}
+{"command":"source","arguments":{"cell":[0,0,0]}}
+{"command":"source","arguments":{"cell":[1,0,0]}}
+)";
+   DIATOM_VERIFY_OK(writeFileAtomic(file("log").toStdString(), log.toStdString()));
+   QCOMPARE(diatomRuns({"replay", "new", file("log"), "-o", file("s.diatom")}).exit, 0);
+   const Outcome found = diatomRuns({"check", file("s.diatom")});
+   QCOMPARE(found.exit, 5);
+   QVERIFY2(found.out.contains("two-sources"), found.out.constData());
+}
+
+void CommandsTest::pipelineDoesTheMainJob()
+{
+   const Outcome done =
+       diatomRuns({"pipeline", sample("gripper.diatom"), "-o", file("out"), "--until", "0.02", "--json"});
+   QVERIFY2(done.exit == 0, done.err.constData());
+   const QJsonObject report = done.object();
+   QVERIFY(report["design"].toObject()["cells"].toInt() > 0);
+   QVERIFY(report["simulation"].toObject()["simulated_s"].toDouble() >= 0.02);
+   QVERIFY(report["assembly"].toObject()["placements"].toInt() > 0);
+   for (const char *stage : {"assembly", "picture"})
+      QVERIFY(fs::exists(report[stage].toObject()["file"].toString().toStdString()));
+   for (const QJsonValue stl : report["stl"].toObject()["files"].toArray())
+      QVERIFY(fs::exists(stl.toObject()["file"].toString().toStdString()));
+}
+
+void CommandsTest::everyPluginOfOursIsAccepted()
+{
+   const QJsonArray plugins = diatomRuns({"plugins", "--json"}).json().array();
+   QVERIFY(plugins.size() >= 10);
+   for (const QJsonValue plugin : plugins)
+      QCOMPARE(plugin.toObject()["verdict"].toString(), QString("ok"));
+}
+
+QTEST_APPLESS_MAIN(CommandsTest)
+#include "commands_test.moc"
