@@ -237,9 +237,9 @@ void Builder::addTo(render::Overlay &overlay, double metresPerPixel) const
    }
    if (m_ghost.tool == Tool::place || m_ghost.tool == Tool::paint) {
       const auto &rgb = m_session->design().model.material(m_session->material()).color;
-      render::addGhost(overlay, lattice, *m_ghost.cell, {rgb[0], rgb[1], rgb[2], 170});
+      render::addGhost(overlay, lattice, *m_ghost.cell, {rgb[0], rgb[1], rgb[2], 185}, color);
    } else if (m_ghost.tool == Tool::erase) {
-      render::addGhost(overlay, lattice, *m_ghost.cell, {kErase.r, kErase.g, kErase.b, 120});
+      render::addGhost(overlay, lattice, *m_ghost.cell, {kErase.r, kErase.g, kErase.b, 120}, kErase);
    }
    if (m_ghost.tool == Tool::place)
       render::addPort(overlay, lattice, m_ghost.port, color, false);

@@ -301,9 +301,15 @@ void MainWindow::updateCounts()
    }
    const auto perMaterial = m_session.hierarchy()->countByMaterial();
    const auto used = std::count_if(perMaterial.begin(), perMaterial.end(), [](auto n) { return n > 0; });
-   m_counts->setText(tr("%1 cells, %2 materials")
-                         .arg(QLocale().toString(static_cast<qulonglong>(m_session.hierarchy()->cells())))
-                         .arg(used));
+   const auto cells = m_session.hierarchy()->cells();
+   const auto &materials = *m_session.design().model.materials;
+   const auto known =
+       std::count_if(materials.begin(), materials.end(), [](const Material &m) { return !m.id.empty(); });
+   const QString number = QLocale().toString(static_cast<qulonglong>(cells));
+   m_counts->setText((cells == 1 ? tr("%1 cell, %2 of %3 materials") : tr("%1 cells, %2 of %3 materials"))
+                         .arg(number)
+                         .arg(used)
+                         .arg(known));
 }
 
 void MainWindow::updateRun()

@@ -76,7 +76,7 @@ std::vector<Line> baseGrid(const Lattice &lattice, const Box &content, Rgba colo
    return lines;
 }
 
-void addGhost(Overlay &overlay, const Lattice &lattice, Index cell, Rgba color)
+void addGhost(Overlay &overlay, const Lattice &lattice, Index cell, Rgba color, Rgba edge)
 {
    const Shape &shape = lattice.shape(lattice.site(cell));
    for (std::size_t face = 0; face < shape.faces.size(); ++face) {
@@ -84,9 +84,7 @@ void addGhost(Overlay &overlay, const Lattice &lattice, Index cell, Rgba color)
       const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[1]).normalized();
       overlay.ghost.push_back({std::move(corners), shaded(color, normal)});
    }
-   Rgba edge = color;
-   edge.a = 230;
-   addCellOutline(overlay, lattice, cell, edge, 1.2f);
+   addCellOutline(overlay, lattice, cell, edge, 1.4f);
 }
 
 void addCellOutline(Overlay &overlay, const Lattice &lattice, Index cell, Rgba color, float width)

@@ -14,8 +14,8 @@ namespace diatom::render {
 /// Outlines, seen from above, of the cells with z index 0 around `content`; faded outwards.
 std::vector<Line> baseGrid(const Lattice &lattice, const Box &content, Rgba color);
 
-/// A translucent cell.
-void addGhost(Overlay &overlay, const Lattice &lattice, Index cell, Rgba color);
+/// A translucent cell with edges in a colour that says what would happen to it.
+void addGhost(Overlay &overlay, const Lattice &lattice, Index cell, Rgba color, Rgba edge);
 /// Outline of a port; dead ones (no neighbour, or an occupied one) hatched.
 void addPort(Overlay &overlay, const Lattice &lattice, const Port &port, Rgba color, bool dead);
 /// Edges of one cell.

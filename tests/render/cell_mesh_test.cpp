@@ -68,8 +68,7 @@ private slots:
       const std::string id = LatticeSpec{}.id;
       Model model = emptyModel(id);
       model.root.cells.fill({{0, 0, 0}, {4, 4, 4}}, Cell{1, 0, 0});
-      const auto mesh =
-          buildCellMesh(Hierarchy(makeLattice(id), model), Job(), 1000, Covered::keptOnSurface);
+      const auto mesh = buildCellMesh(Hierarchy(makeLattice(id), model), Job(), 1000, Covered::keptOnSurface);
       DIATOM_VERIFY_OK(mesh);
       QCOMPARE(mesh->cells.size(), std::size_t(125 - 27)); // the inner 3x3x3 stays away
       QCOMPARE(mesh->exposedFaces(), std::uint64_t(98 * 6));

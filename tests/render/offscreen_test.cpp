@@ -140,7 +140,7 @@ private slots:
       const Camera camera = cameraFor(view);
       const Image plain = draw(**screen, view, camera);
       Overlay ghost, legend;
-      addGhost(ghost, hierarchy->lattice(), {0, 0, 5}, {60, 120, 190, 170});
+      addGhost(ghost, hierarchy->lattice(), {0, 0, 5}, {60, 120, 190, 170}, {30, 110, 220, 255});
       addLegend(legend, camera, lengthLegend("displacement", 2e-3), {0, 0, 0, 255});
       QVERIFY(different(plain, draw(**screen, view, camera, ghost)) > 50);
       QVERIFY(different(plain, draw(**screen, view, camera, legend)) > 1000);
