@@ -36,6 +36,10 @@ if(DIATOM_SANITIZE)
   add_link_options(-fsanitize=${DIATOM_SANITIZE})
 endif()
 
+if(DIATOM_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link) # coverage of the library is what guides the fuzzer
+endif()
+
 # Warnings for our own targets, not for what they include from the system.
 function(diatom_warnings target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion

@@ -254,23 +254,23 @@ Result<std::shared_ptr<const Instance>> Catalogue::createWith(std::string_view i
                                                               const Create &create,
                                                               const DestroyOf &destroy) const
 {
-   const Offer *found = offer(interface, id);
-   auto opened = m_loader->open(found, interface, id, values);
-   if (!opened)
-      return opened.error();
-   const CValues record(opened->values);
-   const std::string name(id), folder = found->manifest->folder.string();
-   const diatom_create request{sizeof(diatom_create), name.c_str(), folder.c_str(), &record.record};
    void *self = nullptr;
-   const Status made = guardedCall(name, "create", job, [&](const diatom_call *call) {
-      return create(opened->table, call, &request, &self);
-   });
+   const Status made =
+       callWith(interface, id, values, "create", job,
+                [&](const void *table, const diatom_call *call, const diatom_create *request) {
+                   return create(table, call, request, &self);
+                });
    if (!made)
       return made.error();
    if (!self)
       return Error{ErrorCode::internal,
                    fmt::format("{} (create): it said it succeeded but made nothing", id)};
-   return std::make_shared<const Instance>(opened->module, name, opened->table, self, destroy(opened->table));
+   const Offer &found = *offer(interface, id);
+   auto module = m_loader->module(*found.manifest); // loaded by the call above
+   if (!module)
+      return module.error();
+   const void *table = (*module)->table(found.provided->interface.c_str());
+   return std::make_shared<const Instance>(*std::move(module), std::string(id), table, self, destroy(table));
 }
 
 Status Catalogue::callWith(
