@@ -1,5 +1,6 @@
 #include "cli/cli.h"
 
+#include "cells/turns.h"
 #include "core/text.h"
 
 #include <fmt/format.h>
@@ -155,6 +156,10 @@ std::unique_ptr<Context::Input> Context::prepare(Opened opened)
    auto lattice = Lattice::make(*catalogue(), opened.design.model.lattice, *m_job);
    if (!lattice) {
       fail(lattice.error());
+      return nullptr;
+   }
+   if (const Status fits = checkTurns(opened.design.model, **lattice); !fits) {
+      fail(fits.error());
       return nullptr;
    }
    auto input = std::make_unique<Input>();

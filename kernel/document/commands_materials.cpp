@@ -1,4 +1,5 @@
 // Commands on the palette and the lattice.
+#include "cells/turns.h"
 #include "document/command_edit.h"
 
 #include <fmt/format.h>
@@ -112,8 +113,9 @@ Result<std::string> setLattice(CommandContext &context, const nlohmann::json &ar
                 "design for it");
    if (edit.ok()) {
       const auto made = Lattice::make(edit.catalogue(), lattice, edit.job());
-      if (!made)
-         edit.fail(made.error().code, made.error().message);
+      const Status fits = made ? checkTurns(edit.model(), **made) : Status(made.error());
+      if (!fits)
+         edit.fail(fits.error().code, fits.error().message);
    }
    return edit.commit("set lattice");
 }

@@ -1,5 +1,6 @@
 #include "document/document.h"
 
+#include "cells/turns.h"
 #include "document/json_text.h"
 
 #include <fmt/format.h>
@@ -24,6 +25,8 @@ Result<std::shared_ptr<const Hierarchy>> Document::hierarchy() const
       auto made = Lattice::make(*m_catalogue, model.lattice, Job());
       if (!made)
          return made.error();
+      if (const Status fits = checkTurns(model, **made); !fits)
+         return fits.error();
       lattice = *made;
    }
    m_hierarchy = std::make_shared<const Hierarchy>(std::move(lattice), model, m_hierarchy.get());

@@ -20,10 +20,12 @@ private slots:
          if (entry.path().extension() != ".so")
             continue;
          QProcess nm;
-         nm.start("nm", {"-D", "--defined-only", "--format=posix", QString::fromStdString(entry.path().string())});
+         nm.start("nm",
+                  {"-D", "--defined-only", "--format=posix", QString::fromStdString(entry.path().string())});
          QVERIFY(nm.waitForFinished());
          QStringList symbols;
-         for (const QString &line : QString::fromUtf8(nm.readAllStandardOutput()).split('\n', Qt::SkipEmptyParts))
+         for (const QString &line :
+              QString::fromUtf8(nm.readAllStandardOutput()).split('\n', Qt::SkipEmptyParts))
             symbols << line.section(' ', 0, 0);
          QCOMPARE(symbols, QStringList{"diatom_module_v1"});
          ++plugins;

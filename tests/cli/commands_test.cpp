@@ -47,6 +47,7 @@ private slots:
    void misuseExitsWithTwo();
    void unreadableInputExitsWithThree();
    void aPlaceThatCannotBeWrittenExitsWithFour();
+   void turnsTheLatticeDoesNotHaveAreRefused();
    void infoPrintsTheAgreedKeys();
    void standardInputIsAFileToo();
    void simulateReportsAndRecords();
@@ -110,6 +111,35 @@ void CommandsTest::aPlaceThatCannotBeWrittenExitsWithFour()
    const Outcome refused = diatomRuns({"export", sample("gripper.diatom"), file("no/folder/x.stl")});
    QCOMPARE(refused.exit, 4);
    QVERIFY(refused.err.contains("x.stl"));
+}
+
+void CommandsTest::turnsTheLatticeDoesNotHaveAreRefused()
+{
+   const auto turnedCell = [](const char *orientation) {
+      return QByteArray(
+                 R"({"diatom":1,"lattice":{"id":"org.diatom_cad.lattice.cube","pitch_m":0.001},"materials":[{"id":"a"}],)"
+                 R"("assembly":{"cells":[{"at":[0,0,0],"size":[1,1,1],"material":"a","orientation":)") +
+             orientation + "}]}}";
+   };
+   const auto turnedComposite = [](const char *rotation) {
+      return QByteArray(
+                 R"({"diatom":1,"lattice":{"id":"org.diatom_cad.lattice.cube","pitch_m":0.001},"materials":[{"id":"a"}],)"
+                 R"("definitions":[{"id":"d","cells":[["a",[0,0,0]]]}],"assembly":{"instances":[["d",[0,0,0],)") +
+             rotation + "]]}}";
+   };
+   for (const QByteArray &fits : {turnedCell("23"), turnedComposite("23")}) {
+      const Outcome read = diatomRuns({"info", "-"}, fits);
+      QVERIFY2(read.exit == 0, read.err.constData());
+   }
+   for (const QByteArray &bad : {turnedCell("24"), turnedComposite("24")})
+      for (const QStringList &command :
+           {QStringList{"info", "-"}, QStringList{"simulate", "-", "--until", "0.001"},
+            QStringList{"check", "-"}, QStringList{"render", "-", file("x.png")}})
+      {
+         const Outcome refused = diatomRuns(command, bad);
+         QCOMPARE(refused.exit, 1);
+         QVERIFY2(refused.err.contains("0 to 23"), refused.err.constData());
+      }
 }
 
 void CommandsTest::infoPrintsTheAgreedKeys()

@@ -1,5 +1,5 @@
-// Truncated octahedra with unit edges that fill space, held together by their 6 squares and 8 hexagons. Layers
-// are half a cube edge high; odd layers are shifted by half a cube edge in x and y.
+// Truncated octahedra with unit edges that fill space, held together by their 6 squares and 8 hexagons.
+// Layers are half a cube edge high; odd layers are shifted by half a cube edge in x and y.
 #include <diatom/lattice.hpp>
 
 using namespace diatom::sdk;
