@@ -228,6 +228,7 @@ void MainWindow::connectViews()
       updateActions();
       updateCounts();
    });
+   connect(&m_session, &Session::fileChanged, this, &MainWindow::updateActions);
    connect(m_viewport, &Viewport::failed, this, showError);
    connect(m_viewport, &Viewport::playWanted, this, &MainWindow::togglePlay);
    connect(m_viewport, &Viewport::hoverChanged, this, [this] {

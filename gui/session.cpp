@@ -52,7 +52,7 @@ bool Session::save(const std::filesystem::path &file)
    }
    m_file = file;
    m_document->markSaved();
-   emit designChanged();
+   emit fileChanged();
    return true;
 }
 

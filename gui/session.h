@@ -51,6 +51,7 @@ public:
 signals:
    void designChanged();  // content: draw again
    void designReplaced(); // another document: look at it afresh
+   void fileChanged();    // saved: the title, not the content
    void materialChanged();
    void failed(const QString &message);
    void noted(const QString &message);

@@ -152,6 +152,8 @@ std::shared_ptr<const render::Moment> SimulationPlayer::frame() const
 void SimulationPlayer::play(std::shared_ptr<const Catalogue> catalogue, const Design &design,
                             std::shared_ptr<const Hierarchy> hierarchy)
 {
+   if (m_thread && m_thread->isFinished()) // it failed: once more from the start
+      reset();
    m_playing = true;
    if (m_run) {
       const std::lock_guard lock(m_run->mutex);

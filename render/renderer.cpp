@@ -159,7 +159,10 @@ void Renderer::Self::drawOverlay(const Eigen::Matrix4f &transform)
    overlays.drawLines(lines, transform, width, height, 0.35f);
    glEnable(GL_CULL_FACE);
    glDepthFunc(GL_LEQUAL);
+   glEnable(GL_POLYGON_OFFSET_FILL); // a tint on a cell lies in the very planes of its faces
+   glPolygonOffset(-1, -1);
    overlays.drawPolygons(ghost, transform, 1);
+   glDisable(GL_POLYGON_OFFSET_FILL);
    glDisable(GL_CULL_FACE);
    overlays.drawLines(lines, transform, width, height, 1);
 
