@@ -81,7 +81,7 @@ void printLines(const nlohmann::ordered_json &value, const std::string &prefix)
 {
    if (value.is_object()) {
       for (const auto &[key, member] : value.items())
-         printLines(member, prefix.empty() ? key : prefix + "." + key);
+         printLines(member, prefix.empty() ? key : fmt::format("{}.{}", prefix, key));
       return;
    }
    if (value.is_array() && !value.empty() && value.front().is_object()) {
@@ -197,8 +197,10 @@ void Context::printTable(const nlohmann::ordered_json &rows) const
    for (const auto &[key, member] : rows.front().items())
       heading.push_back(key);
    std::vector<std::vector<std::string>> lines{heading};
+   lines.reserve(rows.size() + 1);
    for (const auto &row : rows) {
       std::vector<std::string> line;
+      line.reserve(heading.size());
       for (const std::string &key : heading)
          line.push_back(row.contains(key) ? scalarText(row[key]) : "");
       lines.push_back(std::move(line));

@@ -49,9 +49,12 @@ public:
    bool isNode() const { return m_word != 0 && (m_word & 1) == 0; }
    /// The packed cell of a block that is not a node.
    std::uint32_t value() const { return static_cast<std::uint32_t>(m_word >> 32); }
+   // A pointer and a packed cell share one word, which halves a node: the cast back is the point.
+   // NOLINTBEGIN(performance-no-int-to-ptr)
    const Node *node() const { return reinterpret_cast<const Node *>(static_cast<std::uintptr_t>(m_word)); }
    /// For the only owner.
    Node *mutableNode() { return reinterpret_cast<Node *>(static_cast<std::uintptr_t>(m_word)); }
+   // NOLINTEND(performance-no-int-to-ptr)
    /// Same node or same value: equal content without looking.
    bool same(const Block &other) const { return m_word == other.m_word; }
 
