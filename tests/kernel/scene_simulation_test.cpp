@@ -68,8 +68,7 @@ private slots:
 
 void SceneSimulationTest::initTestCase()
 {
-   if (!test::catalogue()->offer(DIATOM_SOLVER_1, Setup().solver))
-      QSKIP("the bond solver was not built");
+   QVERIFY2(test::catalogue()->offer(DIATOM_SOLVER_1, Setup().solver), "the bond solver was not built");
 }
 
 void SceneSimulationTest::aSettledCantileverSagsAsTheSheetSays()
