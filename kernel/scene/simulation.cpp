@@ -282,7 +282,8 @@ Status Simulation::advance(double until, const Job &job)
       if (job.cancelled())
          return Error{ErrorCode::cancelled, fmt::format("cancelled at t = {} s", numberText(self.time))};
       const diatom_step_request request{sizeof(diatom_step_request), until, self.askedStep, batch, 0};
-      diatom_step_result result{sizeof(diatom_step_result), DIATOM_RUNNING, 0, self.time, self.step, -1, -1};
+      diatom_step_result result{
+          sizeof(diatom_step_result), DIATOM_RUNNING, 0, self.time, self.step, -1, -1, 0, 0};
       const auto before = Clock::now();
       const Status stepped = self.solver->call("step", job, [&](const diatom_call *call) {
          return self.table()->step(self.solver->self(), call, &request, &result);

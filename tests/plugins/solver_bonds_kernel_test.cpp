@@ -1,6 +1,6 @@
 // The bond alone: forces and torques against reference values, the invariants, and the energy they are the
 // gradient of.
-#include "plugins/solvers/bonds/constants.h"
+#include "model/constants.h"
 #include "support/support.h"
 
 #include <nlohmann/json.hpp>

@@ -149,7 +149,8 @@ public:
                static_cast<std::int64_t>(channelViews.size()),
                channelViews.data(),
                static_cast<std::int64_t>(effectPointers.size()),
-               effectPointers.data()};
+               effectPointers.data(),
+               analysis.c_str()};
       return scene;
    }
 
@@ -166,6 +167,7 @@ public:
    std::vector<double> position, orientation, extent;
    std::map<std::string, Channel> channels;
    std::vector<std::string> effects{"rotation"};
+   std::string analysis = "dynamics";
 
 private:
    diatom_scene scene{};

@@ -8,7 +8,7 @@ function(diatom_add_plugin folder)
   get_filename_component(kind ${folder} DIRECTORY)
   get_filename_component(kind ${kind} NAME)
   set(target plugin_${kind}_${name})
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp ${folder}/*.c)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp ${folder}/*.c)
 
   # The module carries the very bytes of plugin.json, so that a half-updated install is noticed.
   set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${target}_metadata.h)
@@ -20,6 +20,7 @@ function(diatom_add_plugin folder)
 
   add_library(${target} MODULE ${sources})
   set_property(GLOBAL APPEND PROPERTY DIATOM_PLUGIN_TARGETS ${target})
+  target_include_directories(${target} PRIVATE ${folder}) # a larger plugin has folders of its own
   target_link_libraries(${target} PRIVATE Diatom::Sdk)
   target_compile_features(${target} PRIVATE cxx_std_20 c_std_11)
   target_compile_definitions(${target} PRIVATE DIATOM_PLUGIN_METADATA="${embedded}")

@@ -107,6 +107,13 @@ public:
       return false;
    }
 
+   /// What is asked: "dynamics" unless the scene says otherwise.
+   std::string_view analysis() const
+   {
+      return DIATOM_HAS(diatom_scene, m_scene, analysis) && m_scene->analysis ? m_scene->analysis
+                                                                              : "dynamics";
+   }
+
    /// "(x, y, z)" of a cell, for messages.
    std::string name(std::int64_t cell) const
    {

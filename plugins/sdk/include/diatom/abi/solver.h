@@ -11,6 +11,37 @@ extern "C" {
 
 #define DIATOM_SOLVER_1 "diatom.solver/1"
 
+/* Inputs and outputs of mechanics, by name. Rows belong to cells unless said otherwise; SI, world axes; a
+ * turn is a rotation vector. Degrees of freedom are numbered x y z rx ry rz.
+ *
+ *   channel    stride
+ *   fixed      1      bit mask of degrees of freedom held at rest
+ *   driven     2      degree of freedom, curve: displacement since rest (m), or turn about that world axis
+ *                     (rad), follows the curve; a row for each driven degree of freedom
+ *   curve      2      time (s), value; `where` is the curve's number; linear between its points, constant
+ *                     outside; times ascend
+ *   force      6      force, moment
+ *   velocity   6      at the start: velocity, spin
+ *   pose       6      at the start: displacement since rest, turn since rest
+ *   gravity 3, drag 1, ground 4 (height, stiffness, damping, friction)   one row for the whole scene
+ *   source 6, actuator 5                                                 see kernel/scene/scene.cpp
+ *
+ *   output          rows x stride
+ *   position        cells x 3      where it is now
+ *   rotation        cells x 4      w x y z since rest
+ *   velocity        cells x 3
+ *   angular_velocity cells x 3
+ *   internal_force  cells x 6      force and moment of bonds and elements on the cell
+ *   reaction        cells x 6      what the supports of a cell supply; 0 where it is free
+ *   strain          cells x 1      largest axial strain of its bonds
+ *   energy          1 x 6          kinetic, elastic, gravity, contact, dissipated, work
+ *   momentum        1 x 6          linear, angular about the origin
+ *   eigenvalue      modes x 1      rad2/s2, ascending; negative where the balance is unstable
+ *   mode            (modes * cells) x 6   mode by mode: displacement, turn; of unit modal mass
+ *
+ * Analyses: "dynamics" steps in time; "statics" finds the balance for curves and signals as they are at the
+ * time `until`; "modes" finds that balance first, then vibrations about it. */
+
 /* Elements of arrays: frozen. One named input: `stride` numbers for each of `count` places. */
 typedef struct diatom_channel
 {
@@ -51,6 +82,8 @@ typedef struct diatom_scene
 
    int64_t effects; /* what the planner found the scene to call for */
    const char *const *effect;
+
+   const char *analysis; /* what is asked, one of the capabilities' analysis_name */
 } diatom_scene;
 
 typedef struct diatom_capabilities
@@ -93,12 +126,14 @@ typedef struct diatom_step_request
 typedef struct diatom_step_result
 {
    int64_t size;
-   int64_t state;    /* DIATOM_RUNNING ... */
-   int64_t steps;    /* done by this call */
-   double time;      /* simulated so far, s */
-   double step;      /* last step used, s */
-   int64_t bad_cell; /* first bad cell or -1 */
-   int64_t bad_link; /* first bad link or -1 */
+   int64_t state;      /* DIATOM_RUNNING ... */
+   int64_t steps;      /* done by this call */
+   double time;        /* simulated so far, s */
+   double step;        /* last step used, s */
+   int64_t bad_cell;   /* first bad cell or -1 */
+   int64_t bad_link;   /* first bad link or -1 */
+   double residual;    /* statics: largest unbalanced force over the largest force at work; else 0 */
+   int64_t iterations; /* statics: Newton iterations of this call; else 0 */
 } diatom_step_result;
 
 /* Named outputs. Plugin memory, immutable until destroy. */

@@ -1,7 +1,7 @@
 // Forces of all bonds, each bond once, and their sums per cell; the same bits for any number of threads.
 #pragma once
 
-#include "actuation.h"
+#include "model/actuation.h"
 
 namespace bonds {
 

@@ -1,7 +1,7 @@
 // Balances of a moment: energies, momenta, strain. Read when asked for, not while stepping.
 #pragma once
 
-#include "dynamics.h"
+#include "model/actuation.h"
 
 namespace bonds {
 
@@ -11,7 +11,8 @@ struct Energies
    double stored() const { return kinetic + elastic + gravity + contact; }
 };
 
-Energies energies(const Assembly &assembly, const Dynamics &dynamics);
+/// `rest` is the actuated rest shape, null when nothing is driven; likewise below.
+Energies energies(const Assembly &assembly, const State &state, const RestShape *rest);
 
 struct Momenta
 {
@@ -20,10 +21,10 @@ struct Momenta
 Momenta momenta(const Assembly &assembly, const State &state);
 
 /// Largest axial strain, in magnitude, of each cell's bonds, against the rest length of the moment.
-Column strains(const Assembly &assembly, const Dynamics &dynamics);
+Column strains(const Assembly &assembly, const State &state, const RestShape *rest);
 
 /// The bond that holds most energy or none that is a number; -1 without bonds.
-std::int64_t worstBond(const Assembly &assembly, const Dynamics &dynamics);
+std::int64_t worstBond(const Assembly &assembly, const State &state, const RestShape *rest);
 /// The first cell whose state is no number; -1 when all are.
 std::int64_t brokenCell(const Assembly &assembly, const State &state);
 

@@ -1,6 +1,6 @@
 // The inner loop. Bonds along one axis share their permutation of components, so that no bond looks up a
 // frame.
-#include "forces.h"
+#include "explicit/forces.h"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>

@@ -2,7 +2,7 @@
 // which bond.
 #pragma once
 
-#include "constants.h"
+#include "model/constants.h"
 
 #include <diatom/solver.hpp>
 

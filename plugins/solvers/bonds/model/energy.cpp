@@ -1,5 +1,7 @@
 // Sums run in cell and bond order on one thread: they are read seldom, and their order fixes their bits.
-#include "energy.h"
+#include "model/energy.h"
+
+#include "model/contact.h"
 
 #include <cmath>
 
@@ -7,20 +9,18 @@ namespace bonds {
 
 namespace {
 
-double energyOf(const Assembly &assembly, const Dynamics &dynamics, std::int64_t bond)
+double energyOf(const Assembly &assembly, const State &state, const RestShape *rest, std::int64_t bond)
 {
-   const Relation r = relate(endsOf(assembly, dynamics.state(), bond));
-   if (dynamics.actuated())
-      return bondEnergy(r, assembly.constants[bond], dynamics.rest().separation(bond),
-                        dynamics.rest().turn(bond));
+   const Relation r = relate(endsOf(assembly, state, bond));
+   if (rest)
+      return bondEnergy(r, assembly.constants[bond], rest->separation(bond), rest->turn(bond));
    return bondEnergy(r, assembly.constants[bond], {assembly.length[bond], 0, 0}, {});
 }
 
 } // namespace
 
-Energies energies(const Assembly &assembly, const Dynamics &dynamics)
+Energies energies(const Assembly &assembly, const State &state, const RestShape *rest)
 {
-   const State &state = dynamics.state();
    Energies out;
    for (std::int64_t i = 0; i < assembly.cells; ++i) {
       const Vec3 v = state.velocityOf(i), w = state.spinOf(i), u = state.displacementOf(i);
@@ -38,7 +38,7 @@ Energies energies(const Assembly &assembly, const Dynamics &dynamics)
                         (state.grip[0][i] * state.grip[0][i] + state.grip[1][i] * state.grip[1][i]);
    }
    for (std::int64_t i = 0; i < assembly.links; ++i)
-      out.elastic += energyOf(assembly, dynamics, i);
+      out.elastic += energyOf(assembly, state, rest, i);
    return out;
 }
 
@@ -55,25 +55,25 @@ Momenta momenta(const Assembly &assembly, const State &state)
    return out;
 }
 
-Column strains(const Assembly &assembly, const Dynamics &dynamics)
+Column strains(const Assembly &assembly, const State &state, const RestShape *rest)
 {
    Column out(static_cast<std::size_t>(assembly.cells), 0);
    for (std::int64_t i = 0; i < assembly.links; ++i) {
-      const double rest = dynamics.actuated() ? dynamics.rest().d[0][i] : assembly.length[i];
-      const Relation r = relate(endsOf(assembly, dynamics.state(), i));
-      const double strain = std::abs(r.u.x - rest) / assembly.length[i];
+      const double length = rest ? rest->d[0][i] : assembly.length[i];
+      const Relation r = relate(endsOf(assembly, state, i));
+      const double strain = std::abs(r.u.x - length) / assembly.length[i];
       for (const std::int64_t cell : {assembly.a[i], assembly.b[i]})
          out[cell] = std::max(out[cell], strain);
    }
    return out;
 }
 
-std::int64_t worstBond(const Assembly &assembly, const Dynamics &dynamics)
+std::int64_t worstBond(const Assembly &assembly, const State &state, const RestShape *rest)
 {
    std::int64_t worst = -1;
    double most = -1;
    for (std::int64_t i = 0; i < assembly.links; ++i) {
-      const double energy = energyOf(assembly, dynamics, i);
+      const double energy = energyOf(assembly, state, rest, i);
       if (!std::isfinite(energy))
          return i;
       if (energy > most) {

@@ -1,6 +1,6 @@
 // Bonds of a scene: direction and frame from the rest positions, constants from the two cells' materials as
 // they are turned.
-#include "assembly.h"
+#include "model/assembly.h"
 
 #include <algorithm>
 #include <string>

@@ -1,7 +1,7 @@
 // Ground contact of a cell: a spring and damper at its lower face that never pulls, and friction that sticks.
 #pragma once
 
-#include "state.h"
+#include "model/state.h"
 
 namespace bonds {
 

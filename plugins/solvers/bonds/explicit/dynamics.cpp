@@ -1,6 +1,6 @@
 // Semi-implicit Euler, position Verlet and Runge-Kutta 4. Rotations move by the exponential of spin times
 // step; cells that are no cubes keep their angular momentum, not their spin.
-#include "dynamics.h"
+#include "explicit/dynamics.h"
 
 namespace bonds {
 

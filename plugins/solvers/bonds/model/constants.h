@@ -1,7 +1,7 @@
 // Bond constants from what the two cells are made of: half bonds in series, three beam theories.
 #pragma once
 
-#include "bond_kernel.h"
+#include "model/bond_kernel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Each cell owns half of each of its bonds: a strain eps of the cell changes the bonds along its terminal
 // axis by eps/2.
-#include "actuation.h"
+#include "model/actuation.h"
 
 #include <algorithm>
 #include <string>

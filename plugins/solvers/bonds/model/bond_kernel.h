@@ -3,7 +3,7 @@
 // rest.
 #pragma once
 
-#include "vector.h"
+#include "model/vector.h"
 
 namespace bonds {
 

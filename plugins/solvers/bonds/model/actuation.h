@@ -2,7 +2,7 @@
 // cells.
 #pragma once
 
-#include "state.h"
+#include "model/state.h"
 
 namespace bonds {
 

@@ -2,7 +2,7 @@
 // holds on.
 #pragma once
 
-#include "assembly.h"
+#include "model/assembly.h"
 
 namespace bonds {
 

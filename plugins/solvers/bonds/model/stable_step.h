@@ -2,7 +2,7 @@
 // bonds.
 #pragma once
 
-#include "assembly.h"
+#include "model/assembly.h"
 
 namespace bonds {
 

@@ -2,7 +2,7 @@
 // sharing each cell's mass and inertia among its bonds. Shared in proportion to stiffness, separately per
 // direction, the bound is exact for chains and 1.1 to 1.4 times the true frequency for blocks (shared evenly:
 // up to 1.5, and far off for unlike neighbours).
-#include "stable_step.h"
+#include "model/stable_step.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // Motion in time: net force of every cell and the integrators. Absent effects are compiled out of the loops.
 #pragma once
 
-#include "contact.h"
-#include "forces.h"
+#include "explicit/forces.h"
+#include "model/contact.h"
 
 namespace bonds {
 
@@ -16,8 +16,8 @@ public:
    void setSources(const sdk::Channel &sources) { m_actuation.setSources(sources); }
 
    const State &state() const { return m_state; }
-   const RestShape &rest() const { return m_rest; }
-   bool actuated() const { return m_actuation.active(); }
+   /// The actuated rest shape; null when nothing is driven.
+   const RestShape *rest() const { return m_actuation.active() ? &m_rest : nullptr; }
    double dissipated() const { return m_dissipated; } // J since the start
    double work() const { return m_work; }             // J since the start
    void addWork(double joule) { m_work += joule; }

@@ -1,5 +1,5 @@
 // Compiling a scene: checks of the input, masses and inertias, supports, effects.
-#include "assembly.h"
+#include "model/assembly.h"
 
 #include <algorithm>
 #include <string>
