@@ -10,10 +10,10 @@ const diatom_capabilities &BondsSolver::capabilities()
 {
    static const char *const kPhysics[] = {"mechanics"}, *const kAnalyses[] = {"dynamics"},
                             *const kLattices[] = {"*"};
-   static const char *const kEffects[] = {"rotation", "damping",  "gravity", "actuation",
-                                          "ground",   "friction", "drag",    "loads"};
+   static const char *const kEffects[] = {"rotation", "damping", "gravity", "actuation", "ground",
+                                          "friction", "drag",    "loads",   "solid",     "poisson"};
    static const diatom_capabilities kCaps{
-       sizeof(diatom_capabilities), 1, 1, kPhysics, kAnalyses, 8, kEffects, 1, kLattices, 1};
+       sizeof(diatom_capabilities), 1, 1, kPhysics, kAnalyses, 10, kEffects, 1, kLattices, 1};
    return kCaps;
 }
 

@@ -6,12 +6,13 @@ namespace bonds {
 
 namespace {
 
-constexpr unsigned kGravity = 1, kDrag = 2, kLoads = 4, kGround = 8;
+constexpr unsigned kGravity = 1, kDrag = 2, kLoads = 4, kGround = 8, kCouplings = 16;
 
-unsigned effectsOf(const Assembly &assembly)
+unsigned effectsOf(const Assembly &assembly, const Couplings &couplings)
 {
    return (assembly.hasGravity ? kGravity : 0) | (assembly.hasDrag ? kDrag : 0) |
-          (assembly.hasLoads ? kLoads : 0) | (assembly.hasGround ? kGround : 0);
+          (assembly.hasLoads ? kLoads : 0) | (assembly.hasGround ? kGround : 0) |
+          (couplings.empty() ? 0 : kCouplings);
 }
 
 /// Keeps a quaternion that is all but unit at length 1.
@@ -30,11 +31,12 @@ Dynamics::Piece Dynamics::select(unsigned effects, std::integer_sequence<unsigne
    return kTable[effects];
 }
 
-Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Options &options)
-    : m_assembly(&assembly), m_integrator(options.integrator), m_actuation(scene, assembly),
-      m_state(assembly.cells), m_rest(m_actuation.shape()),
+Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
+                   const Options &options)
+    : m_assembly(&assembly), m_couplings(&couplings), m_integrator(options.integrator),
+      m_actuation(scene, assembly), m_state(assembly.cells), m_rest(m_actuation.shape()), m_counted(m_rest),
       m_bonds(assembly, m_actuation.active(), options.exact),
-      m_piece(select(effectsOf(assembly), std::make_integer_sequence<unsigned, 16>())),
+      m_piece(select(effectsOf(assembly, couplings), std::make_integer_sequence<unsigned, 32>())),
       m_sums(static_cast<std::size_t>((assembly.cells + kGrain - 1) / kGrain))
 {
    const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
@@ -47,6 +49,9 @@ Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const 
    if (assembly.hasFriction)
       for (Column &grip : m_state.grip)
          grip.assign(static_cast<std::size_t>(assembly.cells), 0);
+   if (!couplings.empty())
+      for (Column &column : m_between)
+         column.resize(static_cast<std::size_t>(assembly.cells));
    if (assembly.hasLoads)
       setLoads(scene.channel("force", 6));
    for (std::int64_t i = 0; i < static_cast<std::int64_t>(assembly.velocity.size()); ++i)
@@ -75,6 +80,7 @@ void Dynamics::restore(const Snapshot &from)
 {
    m_state = from.state;
    m_rest = from.rest;
+   m_counted = from.rest;
    m_actuation = from.actuation;
    m_dissipated = from.dissipated;
    m_work = from.work;
@@ -85,6 +91,10 @@ void Dynamics::net(std::int64_t i, double ahead, double weight, Vec3 &force, Vec
 {
    const Assembly &assembly = *m_assembly;
    m_bonds.gather(i, force, torque);
+   if constexpr ((Effects & kCouplings) != 0) {
+      force = force + Vec3{m_between[0][i], m_between[1][i], m_between[2][i]};
+      torque = torque + Vec3{m_between[3][i], m_between[4][i], m_between[5][i]};
+   }
    if constexpr ((Effects & kGravity) != 0) {
       const double m = assembly.mass[i];
       force = force + Vec3{m * assembly.gravity[0], m * assembly.gravity[1], m * assembly.gravity[2]};
@@ -251,9 +261,31 @@ void Dynamics::cells(const sdk::Call &call, Phase phase, double dt, const Stage 
 
 void Dynamics::bondForces(const sdk::Call &call, double weight)
 {
-   const double power = m_bonds.run(call, m_state, m_rest);
+   double power = m_bonds.run(call, m_state, m_rest);
+   if (!m_couplings->empty())
+      for (Column &column : m_between)
+         std::fill(column.begin(), column.end(), 0);
+   for (const auto &coupling : *m_couplings)
+      power += coupling->addForces(call, m_state, rest(), m_between);
    if (m_assembly->damped)
       m_dissipated += power * weight;
+}
+
+/// Takes the rest shape of a moment; returns what it adds to the energy of the accepted one.
+double Dynamics::restChange(double when)
+{
+   m_actuation.setRest(when, m_rest);
+   double change = m_actuation.energyChange(*m_assembly, m_state, m_rest);
+   for (const auto &coupling : *m_couplings)
+      change += coupling->energy(m_state, &m_rest) - coupling->energy(m_state, &m_counted);
+   return change;
+}
+
+void Dynamics::acceptRest()
+{
+   m_actuation.accept(m_rest);
+   if (!m_couplings->empty())
+      m_counted = m_rest;
 }
 
 // The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
@@ -261,14 +293,10 @@ void Dynamics::bondForces(const sdk::Call &call, double weight)
 void Dynamics::step(const sdk::Call &call, double time, double dt)
 {
    const bool actuated = m_actuation.active();
-   const auto changeTo = [&](double when) {
-      m_actuation.setRest(when, m_rest);
-      return m_actuation.energyChange(*m_assembly, m_state, m_rest);
-   };
    if (actuated) {
-      m_work += changeTo(time); // first step, or new signals
-      m_actuation.accept(m_rest);
-      m_work += 0.5 * changeTo(time + dt);
+      m_work += restChange(time); // first step, or new signals
+      acceptRest();
+      m_work += 0.5 * restChange(time + dt);
       m_actuation.setRest(time, m_rest);
    }
    if (m_integrator == Options::Integrator::rungeKutta)
@@ -278,8 +306,8 @@ void Dynamics::step(const sdk::Call &call, double time, double dt)
    else
       semiImplicit(call, dt);
    if (actuated) {
-      m_work += 0.5 * changeTo(time + dt);
-      m_actuation.accept(m_rest);
+      m_work += 0.5 * restChange(time + dt);
+      acceptRest();
    }
 }
 

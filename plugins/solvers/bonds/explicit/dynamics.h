@@ -3,13 +3,15 @@
 
 #include "explicit/forces.h"
 #include "model/contact.h"
+#include "model/coupling.h"
 
 namespace bonds {
 
 class Dynamics
 {
 public:
-   Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Options &options);
+   Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
+            const Options &options);
 
    void step(const sdk::Call &call, double time, double dt);
    void setLoads(const sdk::Channel &loads);
@@ -51,6 +53,8 @@ private:
    void drift(std::int64_t i, double dt);
    void stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque);
    void cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage = Stage{0, 0, 0, 0});
+   double restChange(double when);
+   void acceptRest();
    void bondForces(const sdk::Call &call, double weight);
    void semiImplicit(const sdk::Call &call, double dt);
    void verlet(const sdk::Call &call, double time, double dt);
@@ -61,11 +65,14 @@ private:
    static Piece select(unsigned effects, std::integer_sequence<unsigned, Effects...>);
 
    const Assembly *m_assembly;
+   const Couplings *m_couplings;
    Options::Integrator m_integrator;
    Actuation m_actuation;
    State m_state;
    RestShape m_rest;
+   RestShape m_counted; // whose work is counted; of couplings
    BondForcesPass m_bonds;
+   CellForces m_between; // what couplings exert; empty columns without any
    Piece m_piece;
    Column m_loads;        // 6 per cell, empty without loads
    Column m_start, m_sum; // of Runge-Kutta: 13 per cell; of Verlet with damping: velocities

@@ -1,5 +1,7 @@
 #include "explicit/explicit_run.h"
 
+#include "solid/couplings.h"
+
 #include <charconv>
 #include <cmath>
 
@@ -35,7 +37,8 @@ std::vector<std::array<std::int32_t, 3>> indices(const sdk::SceneView &scene)
 void ExplicitRun::estimate(const Options &options, const sdk::SceneView &scene, diatom_estimate &estimate)
 {
    const Assembly assembly(scene, options);
-   const StableStep stable = stableStep(assembly, options);
+   const Couplings couplings = makeCouplings(scene, assembly);
+   const StableStep stable = stableStep(assembly, options, couplings);
    const double evaluations = options.integrator == Options::Integrator::rungeKutta ? 4 : 1;
    const auto cells = static_cast<double>(assembly.cells), links = static_cast<double>(assembly.links);
    estimate.bytes = cells * 900 + links * 380;
@@ -45,8 +48,9 @@ void ExplicitRun::estimate(const Options &options, const sdk::SceneView &scene, 
 }
 
 ExplicitRun::ExplicitRun(const Options &options, const sdk::SceneView &scene)
-    : m_options(options), m_assembly(scene, m_options), m_index(indices(scene)),
-      m_dynamics(scene, m_assembly, m_options), m_stable(stableStep(m_assembly, m_options)),
+    : m_options(options), m_assembly(scene, m_options), m_couplings(makeCouplings(scene, m_assembly)),
+      m_index(indices(scene)), m_dynamics(scene, m_assembly, m_couplings, m_options),
+      m_stable(stableStep(m_assembly, m_options, m_couplings)),
       m_good(m_dynamics.snapshot(0)), m_output{{{"position", "m", m_assembly.cells, 3},
                                                 {"rotation", "", m_assembly.cells, 4},
                                                 {"velocity", "m/s", m_assembly.cells, 3},

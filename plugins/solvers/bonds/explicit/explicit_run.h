@@ -26,13 +26,17 @@ public:
 
 private:
    double chooseStep(const diatom_step_request &request) const;
-   Energies energiesNow() const { return energies(m_assembly, m_dynamics.state(), m_dynamics.rest()); }
+   Energies energiesNow() const
+   {
+      return energies(m_assembly, m_couplings, m_dynamics.state(), m_dynamics.rest());
+   }
    bool diverged();
    std::string whereText(std::int64_t bond, std::int64_t cell) const;
    void reportDivergence(const sdk::Call &call, double time, double step, diatom_step_result &result);
 
    Options m_options;
    Assembly m_assembly;
+   Couplings m_couplings;
    std::vector<std::array<std::int32_t, 3>> m_index; // of cells, for messages
    Dynamics m_dynamics;
    StableStep m_stable;

@@ -1,6 +1,7 @@
 // Bonds of a scene: direction and frame from the rest positions, constants from the two cells' materials as
 // they are turned.
 #include "model/assembly.h"
+#include "model/cell_model.h"
 
 #include <algorithm>
 #include <string>
@@ -17,6 +18,7 @@ struct Stiffness
    double youngsModulus = 0, poissonRatio = 0, dampingRatio = 0;
    double axial[3], shear[3][3], bending[3], torsion[3]; // not a number = derive
    bool explicitConstants = false;
+   CellModel model = CellModel::bond;
 };
 
 Stiffness readStiffness(const sdk::SceneView &scene, std::int32_t material)
@@ -44,6 +46,7 @@ Stiffness readStiffness(const sdk::SceneView &scene, std::int32_t material)
    s.poissonRatio = scene.property(material, "poisson_ratio");
    const double zeta = scene.property(material, "damping_ratio");
    s.dampingRatio = std::isnan(zeta) ? 0 : zeta;
+   s.model = cellModelOf(scene, material);
    if (std::isnan(s.poissonRatio))
       s.poissonRatio = 0;
    if (s.dampingRatio < 0 || s.youngsModulus < 0 || std::isinf(s.youngsModulus) || !(s.poissonRatio > -1) ||
@@ -153,13 +156,77 @@ double inertiaAbout(const Assembly &cells, std::int32_t cell, Vec3 axis)
 
 double reduced(double a, double b) { return a * b / (a + b); }
 
+/// The materials' part in the constants of bonds, and which cells lie around a bond.
+class Compiler
+{
+public:
+   Compiler(const sdk::SceneView &scene, const Assembly &assembly, const Options &options)
+       : m_scene(scene), m_assembly(assembly), m_options(options), m_neighbours(assembly.cells)
+   {
+      for (std::int32_t m = 0; m < scene.materials(); ++m)
+         m_materials.push_back(readStiffness(scene, m));
+      for (std::int64_t i = 0; i < assembly.group[3]; ++i)
+         m_neighbours.join(assembly.a[i], assembly.b[i], assembly.axisOf(i));
+   }
+   BondConstants constantsOf(std::int64_t bond, bool &damped) const;
+
+private:
+   const Stiffness &of(std::int64_t cell) const { return m_materials[m_scene.material(cell)]; }
+   bool solid(std::int64_t cell) const { return of(cell).model == CellModel::solid; }
+   /// Blocks are dense because the user says so, solids where they lie in a square of four.
+   bool dense(std::int64_t bond, int plane) const;
+
+   const sdk::SceneView &m_scene;
+   const Assembly &m_assembly;
+   const Options &m_options;
+   std::vector<Stiffness> m_materials;
+   Neighbours m_neighbours;
+};
+
+bool Compiler::dense(std::int64_t bond, int plane) const
+{
+   const std::int64_t a = m_assembly.a[bond], b = m_assembly.b[bond];
+   const auto counts = [&](std::int64_t cell) {
+      return of(cell).model != CellModel::bond && !of(cell).explicitConstants;
+   };
+   if (!counts(a) || !counts(b))
+      return false;
+   if (!solid(a) || !solid(b))
+      return true;
+   const int axis = m_assembly.axisOf(bond);
+   return axis < 3 && m_neighbours.squared(a, b, axis, (axis + 1 + plane) % 3, counts);
+}
+
+BondConstants Compiler::constantsOf(std::int64_t bond, bool &damped) const
+{
+   const Assembly &assembly = m_assembly;
+   const std::int32_t a = assembly.a[bond], b = assembly.b[bond];
+   const Mat3 axes = assembly.frameOf(bond);
+   const double l = assembly.length[bond];
+   const auto turning = [&](Vec3 axis) {
+      return reduced(inertiaAbout(assembly, a, axis), inertiaAbout(assembly, b, axis));
+   };
+   HalfBond ha = halfOf(m_scene, of(a), a, axes, l), hb = halfOf(m_scene, of(b), b, axes, l);
+   const bool both[2] = {dense(bond, 0), dense(bond, 1)};
+   for (int plane = 0; plane < 2; ++plane) {
+      if (!both[plane])
+         continue;
+      makeDense(ha, plane);
+      makeDense(hb, plane);
+      if (!both[1 - plane] && solid(a) && solid(b)) {
+         twistAsPlate(ha, plane, of(a).poissonRatio);
+         twistAsPlate(hb, plane, of(b).poissonRatio);
+      }
+   }
+   damped = ha.dampingRatio > 0 && hb.dampingRatio > 0;
+   return compose(ha, hb, l, m_options.beam, true, reduced(assembly.mass[a], assembly.mass[b]),
+                  {turning(axes.r0), turning(axes.r1), turning(axes.r2)});
+}
+
 } // namespace
 
 void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
 {
-   std::vector<Stiffness> materials;
-   for (std::int32_t m = 0; m < scene.materials(); ++m)
-      materials.push_back(readStiffness(scene, m));
    std::vector<Direction> direction;
    for (std::int64_t i = 0; i < links; ++i) {
       const std::int32_t ca = scene.linkA(i), cb = scene.linkB(i);
@@ -181,7 +248,6 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
    b.resize(link.size());
    length.resize(link.size());
    constants.resize(link.size());
-   bool anyDamping = false;
    for (std::int64_t i = 0; i < links; ++i) {
       const Direction &d = direction[link[i]];
       a[i] = d.reversed ? scene.linkB(link[i]) : scene.linkA(link[i]);
@@ -189,17 +255,14 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
       length[i] = d.length;
       if (d.axis == 3)
          frame.push_back(frameAlong(d.unit));
-      const Mat3 axes = frameOf(i);
-      const double mu = reduced(mass[a[i]], mass[b[i]]);
-      const double turning[3] = {
-          reduced(inertiaAbout(*this, a[i], axes.r0), inertiaAbout(*this, b[i], axes.r0)),
-          reduced(inertiaAbout(*this, a[i], axes.r1), inertiaAbout(*this, b[i], axes.r1)),
-          reduced(inertiaAbout(*this, a[i], axes.r2), inertiaAbout(*this, b[i], axes.r2))};
-      const HalfBond ha = halfOf(scene, materials[scene.material(a[i])], a[i], axes, d.length);
-      const HalfBond hb = halfOf(scene, materials[scene.material(b[i])], b[i], axes, d.length);
-      constants[i] = compose(ha, hb, d.length, options.beam, true, mu, turning);
+   }
+   const Compiler compiler(scene, *this, options);
+   bool anyDamping = false;
+   for (std::int64_t i = 0; i < links; ++i) {
+      bool own = false;
+      constants[i] = compiler.constantsOf(i, own);
       coupled = coupled || constants[i].s[0] != 0 || constants[i].s[1] != 0;
-      anyDamping = anyDamping || (ha.dampingRatio > 0 && hb.dampingRatio > 0);
+      anyDamping = anyDamping || own;
    }
    damped = damped && anyDamping;
    if (!damped)

@@ -2,7 +2,7 @@
 // analyses ask it for forces, energy and stiffness; a scene that calls for none has none in its list.
 #pragma once
 
-#include "model/state.h"
+#include "model/actuation.h"
 
 #include <functional>
 #include <memory>
@@ -17,17 +17,21 @@ using CellForces = std::array<Column, 6>;
 /// per displacement and spin (world axes) of `column`.
 using AddBlock = std::function<void(std::int64_t row, std::int64_t column, const double *block)>;
 
-/// Immutable once built. Sums run in a fixed order, so that results have the same bits on any number of
-/// threads.
+/// Immutable but for room to work in: one call at a time. Sums run in a fixed order, so that results have the
+/// same bits on any number of threads.
 class Coupling
 {
 public:
    virtual ~Coupling() = default;
-   /// Adds the forces at `state`; returns the power (W) that its damping takes out.
-   virtual double addForces(const sdk::Call &call, const State &state, CellForces &forces) const = 0;
-   virtual double energy(const State &state) const = 0; // J
+   /// Adds the forces at `state`; returns the power (W) that its damping takes out. `rest` is the actuated
+   /// rest shape, null when nothing is driven; likewise below.
+   virtual double addForces(const sdk::Call &call, const State &state, const RestShape *rest,
+                            CellForces &forces) const = 0;
+   virtual double energy(const State &state, const RestShape *rest) const = 0; // J
    /// Tangent stiffness at `state`, symmetric up to the moments in it.
-   virtual void addStiffness(const State &state, const AddBlock &add) const = 0;
+   virtual void addStiffness(const State &state, const RestShape *rest, const AddBlock &add) const = 0;
+   /// Change of the forces, negated, per velocity and spin: the other half of an implicit step's tangent.
+   virtual void addDamping(const State &state, const AddBlock &add) const = 0;
    /// Adds to each degree of freedom of each cell at least the largest sum of magnitudes in its row of the
    /// stiffness (N/m; N m/rad) and of the damping at rest: what a bound of the stable step needs.
    virtual void addRowSums(CellForces &stiffness, CellForces &damping) const = 0;

@@ -19,7 +19,8 @@ double energyOf(const Assembly &assembly, const State &state, const RestShape *r
 
 } // namespace
 
-Energies energies(const Assembly &assembly, const State &state, const RestShape *rest)
+Energies energies(const Assembly &assembly, const Couplings &couplings, const State &state,
+                  const RestShape *rest)
 {
    Energies out;
    for (std::int64_t i = 0; i < assembly.cells; ++i) {
@@ -39,6 +40,8 @@ Energies energies(const Assembly &assembly, const State &state, const RestShape 
    }
    for (std::int64_t i = 0; i < assembly.links; ++i)
       out.elastic += energyOf(assembly, state, rest, i);
+   for (const auto &coupling : couplings)
+      out.elastic += coupling->energy(state, rest);
    return out;
 }
 

@@ -1,7 +1,7 @@
 // Balances of a moment: energies, momenta, strain. Read when asked for, not while stepping.
 #pragma once
 
-#include "model/actuation.h"
+#include "model/coupling.h"
 
 namespace bonds {
 
@@ -12,7 +12,8 @@ struct Energies
 };
 
 /// `rest` is the actuated rest shape, null when nothing is driven; likewise below.
-Energies energies(const Assembly &assembly, const State &state, const RestShape *rest);
+Energies energies(const Assembly &assembly, const Couplings &couplings, const State &state,
+                  const RestShape *rest);
 
 struct Momenta
 {

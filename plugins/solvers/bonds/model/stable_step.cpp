@@ -16,6 +16,7 @@ namespace {
 struct Load
 {
    std::array<Column, 3> move, turn;
+   CellForces stiffness, damping; // row sums of couplings; empty columns without any
 };
 
 /// Inverse of the share of mass (inertia) per unit of stiffness: share = stiffness / total * mass.
@@ -63,8 +64,23 @@ Diagonal diagonalOf(const BondConstants &k, double length, double dt)
    return out;
 }
 
-/// Adds bonds and ground contacts.
-Load loadOf(const Assembly &assembly, double dt)
+/// A coupling's eigenvalues are at most its row sum over its share of the mass (Gershgorin's theorem), a
+/// bond's twice its stiffness over that: shared by half the row sum, both weigh the same.
+void addCouplings(const Assembly &assembly, const Couplings &couplings, double dt, Load &load)
+{
+   for (CellForces *sums : {&load.stiffness, &load.damping})
+      for (Column &column : *sums)
+         column.assign(static_cast<std::size_t>(assembly.cells), 0);
+   for (const auto &coupling : couplings)
+      coupling->addRowSums(load.stiffness, load.damping);
+   for (int k = 0; k < 6; ++k)
+      for (std::int64_t i = 0; i < assembly.cells; ++i)
+         (k < 3 ? load.move : load.turn)[k % 3][i] +=
+             0.5 * weighed(load.stiffness[k][i], load.damping[k][i], dt);
+}
+
+/// Adds bonds, ground contacts and couplings.
+Load loadOf(const Assembly &assembly, const Couplings &couplings, double dt)
 {
    Load load;
    for (int k = 0; k < 3; ++k) {
@@ -96,6 +112,8 @@ Load loadOf(const Assembly &assembly, double dt)
             load.turn[axis][i] += k * h * h;
          }
       }
+   if (!couplings.empty())
+      addCouplings(assembly, couplings, dt, load);
    return load;
 }
 
@@ -154,10 +172,27 @@ void bondEigenvalues(const Assembly &assembly, const Shares &shares, std::int64_
    }
 }
 
-/// A bound for any `dt` > 0, which only steers how the masses are shared.
-StableStep boundAt(const Assembly &assembly, const Options &options, double dt)
+/// The bound that couplings set, where it is below that of `out`.
+void boundCouplings(const Assembly &assembly, const Options &options, const Load &load, const Shares &shares,
+                    double dt, StableStep &out)
 {
-   const Load load = loadOf(assembly, dt);
+   for (std::int64_t i = 0; i < assembly.cells; ++i)
+      for (int k = 0; k < 6; ++k) {
+         const double stiffness = load.stiffness[k][i], damping = load.damping[k][i];
+         const double own = 0.5 * weighed(stiffness, damping, dt);
+         if (!(own > 0))
+            continue;
+         const double share = (k < 3 ? shares.move(i, k) : shares.turn(i, k - 3)) / own;
+         const double limit = limitOf(stiffness * share, damping * share + assembly.drag, options.integrator);
+         if (limit < out.step)
+            out = {limit, -1, i};
+      }
+}
+
+/// A bound for any `dt` > 0, which only steers how the masses are shared.
+StableStep boundAt(const Assembly &assembly, const Options &options, const Couplings &couplings, double dt)
+{
+   const Load load = loadOf(assembly, couplings, dt);
    const Shares shares{assembly, load};
    StableStep out{std::numeric_limits<double>::infinity(), -1, -1};
    for (std::int64_t i = 0; i < assembly.links; ++i) {
@@ -167,6 +202,8 @@ StableStep boundAt(const Assembly &assembly, const Options &options, double dt)
       if (limit < out.step)
          out = {limit, i, -1};
    }
+   if (!couplings.empty())
+      boundCouplings(assembly, options, load, shares, dt, out);
    if (!assembly.hasGround)
       return out;
    const double k = assembly.ground.stiffness, c = assembly.ground.damping, own = weighed(k, c, dt);
@@ -184,11 +221,11 @@ StableStep boundAt(const Assembly &assembly, const Options &options, double dt)
 
 } // namespace
 
-StableStep stableStep(const Assembly &assembly, const Options &options)
+StableStep stableStep(const Assembly &assembly, const Options &options, const Couplings &couplings)
 {
-   StableStep best = boundAt(assembly, options, std::numeric_limits<double>::max());
+   StableStep best = boundAt(assembly, options, couplings, std::numeric_limits<double>::max());
    for (int pass = 0; pass < 3 && std::isfinite(best.step); ++pass) {
-      const StableStep next = boundAt(assembly, options, best.step > 0 ? best.step : 1e-9);
+      const StableStep next = boundAt(assembly, options, couplings, best.step > 0 ? best.step : 1e-9);
       if (next.step > best.step)
          best = next;
    }

@@ -1,8 +1,8 @@
 // The largest step that an explicit integrator may take: a guaranteed bound from the eigenvalues of single
-// bonds.
+// bonds and the row sums of couplings.
 #pragma once
 
-#include "model/assembly.h"
+#include "model/coupling.h"
 
 namespace bonds {
 
@@ -10,13 +10,13 @@ struct StableStep
 {
    double step = 0;        // s
    std::int64_t bond = -1; // that sets it
-   std::int64_t cell = -1; // whose ground contact sets it
+   std::int64_t cell = -1; // whose ground contact or coupling sets it
 };
 
 /// The result when nothing in the scene limits the step (no stiffness, no damping): a step for accuracy
 /// alone.
 inline constexpr double kFreeStep = 1e-3;
 
-StableStep stableStep(const Assembly &assembly, const Options &options);
+StableStep stableStep(const Assembly &assembly, const Options &options, const Couplings &couplings);
 
 } // namespace bonds
