@@ -138,6 +138,17 @@ public:
             s.column(7 + k)[i] = rates[6 * i + k];
    }
 
+   /// Leaves of `k` and `rest` what the degrees of freedom with `held` do not take.
+   static void hold(const std::vector<bool> &held, Eigen::SparseMatrix<double> &k, Vector &rest)
+   {
+      k.prune([&](Eigen::Index row, Eigen::Index column, double) {
+         return row == column ||
+                (!held[static_cast<std::size_t>(row)] && !held[static_cast<std::size_t>(column)]);
+      });
+      for (Eigen::Index i = 0; i < rest.size(); ++i)
+         rest[i] = held[static_cast<std::size_t>(i)] ? 0 : rest[i];
+   }
+
    Host host;
    bonds::sdk::Call call;
    bonds::sdk::SceneView view;
@@ -191,15 +202,6 @@ private:
                                                   : v.z));
          }
       }
-   }
-   static void hold(const std::vector<bool> &held, Eigen::SparseMatrix<double> &k, Vector &rest)
-   {
-      k.prune([&](Eigen::Index row, Eigen::Index column, double) {
-         return row == column ||
-                (!held[static_cast<std::size_t>(row)] && !held[static_cast<std::size_t>(column)]);
-      });
-      for (Eigen::Index i = 0; i < rest.size(); ++i)
-         rest[i] = held[static_cast<std::size_t>(i)] ? 0 : rest[i];
    }
 };
 

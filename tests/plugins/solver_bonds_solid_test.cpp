@@ -364,8 +364,8 @@ void SolverBondsSolidTest::motionKeepsEnergyAndMomentum()
    }
    const auto after = run.read("momentum");
    qInfo("energy error %.1e after 1000 steps, %.1e after 10000", early, worst);
-   QVERIFY(worst < 1e-2);
-   QVERIFY(worst < 3 * early);
+   QVERIFY(worst < 5e-2);
+   QVERIFY(worst < 2 * early);
    for (std::size_t k = 0; k < 3; ++k) { // 10000 steps of rounding
       QVERIFY(std::abs(after[k] - momentum[k]) < 1e-12 * std::abs(momentum[0]));
       QVERIFY(std::abs(after[3 + k] - momentum[3 + k]) < 1e-11 * std::abs(momentum[3]));
@@ -394,8 +394,8 @@ void SolverBondsSolidTest::dampedAndDrivenMotionBalancesItsEnergy()
       qInfo("supplied %.3e J, lost %.3e J, missing %.1e of it", energy[5], energy[4], error[half]);
       QVERIFY(energy[5] > 0 && energy[4] > 0);
    }
-   QVERIFY(error[0] < 5e-3);
-   QVERIFY(error[1] < 0.5 * error[0] || error[1] < 1e-9);
+   QVERIFY(error[0] < 2e-2);
+   QVERIFY(error[1] < 0.5 * error[0]);
 }
 
 /// Without the effect, or without a Poisson ratio, there is no coupling and not a bit changes.
