@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace diatom {
 
@@ -42,16 +43,34 @@ std::vector<Index> existingCells(Edit &edit)
    return cells;
 }
 
+constexpr const char *kPlaceKeys[] = {"cell", "cells", "box", "region", "material"};
+
+/// Words for cells contradict each other: none is passed over in silence.
+void refuseTwoPlaces(Edit &edit)
+{
+   const auto given = std::count_if(std::begin(kPlaceKeys), std::end(kPlaceKeys),
+                                    [&](const char *key) { return edit.arguments().has(key); });
+   if (given > 1)
+      edit.fail(ErrorCode::usage, fmt::format("give only one of {}", fmt::join(kPlaceKeys, ", ")));
+}
+
+/// Argument "material".
+OfMaterial namedMaterial(Edit &edit)
+{
+   const MaterialIndex material = edit.material("material");
+   return edit.ok() ? OfMaterial{edit.model().material(material).id} : OfMaterial();
+}
+
 /// What an entry is made on: each cell named, or the region or material as such.
 std::vector<Where> places(Edit &edit)
 {
+   refuseTwoPlaces(edit);
    const auto &given = edit.arguments();
    std::vector<Where> found;
    if (given.has("region"))
       found.emplace_back(edit.box("region"));
    else if (given.has("material"))
-      found.emplace_back(edit.ok() ? OfMaterial{edit.model().material(edit.material("material")).id}
-                                   : OfMaterial{});
+      found.emplace_back(namedMaterial(edit));
    if (!found.empty()) {
       if (edit.ok() && edit.hierarchy() && !anyCell(*edit.hierarchy(), found.front()))
          edit.fail(ErrorCode::invalid, fmt::format("there is no cell in the {}", whereText(found.front())));
@@ -66,6 +85,7 @@ std::vector<Where> places(Edit &edit)
 template<typename Item>
 std::size_t removeNamed(Edit &edit, std::vector<Item> &items)
 {
+   refuseTwoPlaces(edit);
    const auto &given = edit.arguments();
    std::vector<Where> named;
    if (given.has("region"))
@@ -88,7 +108,7 @@ std::size_t removeNamed(Edit &edit, std::vector<Item> &items)
 nlohmann::json withoutPlaces(const Edit &edit)
 {
    auto values = edit.arguments().json();
-   for (const char *key : {"cell", "cells", "box", "region", "material"})
+   for (const char *key : kPlaceKeys)
       values.erase(key);
    values["cell"] = {0, 0, 0}; // stands for each of the places
    return values;

@@ -33,12 +33,12 @@ bool contains(const std::vector<std::string> &list, std::string_view name)
 
 const diatom_solver *solverTable(const void *table) { return static_cast<const diatom_solver *>(table); }
 
-Result<Capabilities> readCapabilities(const Catalogue &catalogue, const std::string &id, const Values &values,
-                                      const Job &job)
+/// Asked without values, so that what a solver cannot do at all is told before values that it does not know.
+Result<Capabilities> readCapabilities(const Catalogue &catalogue, const std::string &id, const Job &job)
 {
    Capabilities found;
    const Status read = catalogue.callWith(
-       kInterface, id, values, "capabilities", job,
+       kInterface, id, {}, "capabilities", job,
        [&](const void *table, const diatom_call *call, const diatom_create *create) -> std::int32_t {
           const diatom_capabilities *caps = nullptr;
           const std::int32_t status = solverTable(table)->capabilities(call, create->id, &caps);
@@ -148,7 +148,7 @@ Result<std::unique_ptr<SolverRun>> SolverRun::create(std::shared_ptr<const Catal
    Values merged = setup.solverValues;
    for (const auto &[name, value] : values)
       merged[name] = value;
-   const auto can = readCapabilities(*catalogue, setup.solver, merged, job);
+   const auto can = readCapabilities(*catalogue, setup.solver, job);
    if (!can)
       return can.error();
    if (const Status able = checkCapabilities(*can, *scene, setup); !able)

@@ -1,28 +1,13 @@
 // The command line as a user calls it: what each command prints and writes, and how it fails.
+#include "cli/program.h"
 #include "core/file.h"
-#include "support/process.h"
-#include "support/support.h"
-
-#include <QJsonArray>
-#include <QJsonDocument>
-#include <QJsonObject>
 
 using namespace diatom;
+using test::diatomRuns;
+using Outcome = test::Printed;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Outcome : test::Outcome
-{
-   QJsonDocument json() const { return QJsonDocument::fromJson(out); }
-   QJsonObject object() const { return json().object(); }
-};
-
-Outcome diatomRuns(const QStringList &arguments, const QByteArray &input = {})
-{
-   return {
-       test::run(QString::fromStdString((test::binaryDir() / "bin" / "diatom").string()), arguments, input)};
-}
 
 QString sample(const char *name) { return QString::fromStdString((test::samplesDir() / name).string()); }
 

@@ -274,6 +274,21 @@ private slots:
       }
    }
 
+   void theExampleOfTheManualIsADesign()
+   {
+      const auto text = readFile(test::sourceDir() / "docs/file-format.md");
+      DIATOM_VERIFY_OK(text);
+      const std::size_t begin = text->find("```json\n"), end = text->find("\n```\n", begin);
+      QVERIFY(begin != std::string::npos && end != std::string::npos);
+      const auto opened = read(text->substr(begin + 8, end - begin - 8));
+      DIATOM_VERIFY_OK(opened);
+      QVERIFY(opened->notes.empty()); // every key is known
+      const Setup &setup = opened->design.setup;
+      QCOMPARE(setup.supports.size(), std::size_t{2});
+      QCOMPARE(setup.drives.size(), std::size_t{2});
+      QVERIFY(setup.starts[0].about.has_value());
+   }
+
    void filesOfVersionOneStayReadable()
    {
       int files = 0;
