@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <utility>
 
 namespace diatom::cli {
 
@@ -18,24 +19,25 @@ std::string headed(const std::string &name, const std::string &unit)
    return unit.empty() ? name : fmt::format("{} ({})", name, unit);
 }
 
-/// A column group of the state file.
+/// A column group of the state file: an output, its columns and their units.
 struct StateColumns
 {
-   const char *output, *unit;
-   std::vector<const char *> names;
+   const char *output;
+   std::vector<std::pair<const char *, const char *>> columns;
 };
 
 /// Those that the run has.
 std::vector<StateColumns> stateColumns(const SolverRun &run)
 {
-   std::vector<StateColumns> columns{{"position", "m", {"x", "y", "z"}},
-                                     {"rotation", "", {"qw", "qx", "qy", "qz"}},
-                                     {"velocity", "m/s", {"vx", "vy", "vz"}},
-                                     {"angular_velocity", "rad/s", {"wx", "wy", "wz"}},
-                                     {"strain", "", {"strain"}},
-                                     {"reaction", "N or N m", {"fx", "fy", "fz", "mx", "my", "mz"}}};
-   std::erase_if(columns, [&](const StateColumns &group) { return !run.hasOutput(group.output); });
-   return columns;
+   std::vector<StateColumns> groups{
+       {"position", {{"x", "m"}, {"y", "m"}, {"z", "m"}}},
+       {"rotation", {{"qw", ""}, {"qx", ""}, {"qy", ""}, {"qz", ""}}},
+       {"velocity", {{"vx", "m/s"}, {"vy", "m/s"}, {"vz", "m/s"}}},
+       {"angular_velocity", {{"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}}},
+       {"strain", {{"strain", ""}}},
+       {"reaction", {{"fx", "N"}, {"fy", "N"}, {"fz", "N"}, {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}}}};
+   std::erase_if(groups, [&](const StateColumns &group) { return !run.hasOutput(group.output); });
+   return groups;
 }
 
 constexpr std::array<const char *, 6> kEnergies{"kinetic", "elastic",    "gravity",
@@ -121,13 +123,13 @@ Status writeState(const SolverRun &run, const Model &model, const std::filesyste
    const auto groups = stateColumns(run);
    std::vector<std::vector<double>> data;
    std::vector<std::string> names{"i", "j", "k", "material"};
-   for (const StateColumns &columns : groups) {
-      auto values = run.output(columns.output, job);
+   for (const StateColumns &group : groups) {
+      auto values = run.output(group.output, job);
       if (!values)
          return values.error();
       data.push_back(*std::move(values));
-      for (const char *name : columns.names)
-         names.push_back(headed(name, columns.unit));
+      for (const auto &[name, unit] : group.columns)
+         names.push_back(headed(name, unit));
    }
    const bool csv = file.extension() == ".csv";
    AtomicFile out(file);
@@ -141,7 +143,7 @@ Status writeState(const SolverRun &run, const Model &model, const std::filesyste
                                       fmt::to_string(index.z), material};
       nlohmann::ordered_json object{{"cell", toJson(index)}, {"material", material}};
       for (std::size_t group = 0; group < data.size(); ++group) {
-         const auto width = static_cast<std::int64_t>(groups[group].names.size());
+         const auto width = static_cast<std::int64_t>(groups[group].columns.size());
          const auto begin = data[group].begin() + cell * width;
          if (csv)
             std::transform(begin, begin + width, std::back_inserter(fields), numberText);
