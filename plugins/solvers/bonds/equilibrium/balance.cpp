@@ -6,6 +6,7 @@
 #include "model/contact.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace bonds {
@@ -52,7 +53,10 @@ Vec3 stretchOf(const Assembly &assembly, const RestShape &rest, std::int64_t bon
       return {};
    return rest.separation(bond) - Vec3{assembly.length[bond], 0, 0};
 }
-Vec3 turnOf(const RestShape &rest, std::int64_t bond) { return rest.phi[0].empty() ? Vec3{} : rest.turn(bond); }
+Vec3 turnOf(const RestShape &rest, std::int64_t bond)
+{
+   return rest.phi[0].empty() ? Vec3{} : rest.turn(bond);
+}
 
 BondPoint pointOf(const Assembly &assembly, const State &state, const RestShape &rest, std::int64_t bond,
                   const Mat3 &frame, bool rates)
@@ -78,6 +82,17 @@ void put(double *to, Vec3 v, double sign)
    to[2] += sign * v.z;
 }
 
+/// N that the last digits of a bond's displacements and turns are worth; several roundings meet in a cell.
+double roundingOf(const Assembly &assembly, const State &state, std::int64_t bond)
+{
+   constexpr double kDigits = 16 * std::numeric_limits<double>::epsilon();
+   const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
+   const BondConstants &k = assembly.constants[bond];
+   const double moved = norm(state.displacementOf(a)) + norm(state.displacementOf(b)),
+                turned = norm(vec(state.turnOf(a))) + norm(vec(state.turnOf(b)));
+   return kDigits * std::max({k.k[0], k.k[1], k.k[2]}) * (moved + turned * assembly.length[bond]);
+}
+
 /// Largest force that the actuated rest shape would call up if nothing could move.
 double blockedForce(const BondConstants &k, Vec3 stretch, Vec3 turn, double length)
 {
@@ -86,6 +101,14 @@ double blockedForce(const BondConstants &k, Vec3 stretch, Vec3 turn, double leng
 }
 
 } // namespace
+
+Vec3 logarithm(Quat q)
+{
+   const Vec3 v = q.w < 0 ? -vec(q) : vec(q);
+   double s = 1, p = 0;
+   arcRatio(dot(v, v), std::abs(q.w), s, p);
+   return (2 * s) * v;
+}
 
 Loading blend(const Loading &a, const Loading &b, double f)
 {
@@ -100,15 +123,6 @@ Loading blend(const Loading &a, const Loading &b, double f)
    return out;
 }
 
-void Measure::add(const Measure &other)
-{
-   if (!(other.unbalanced <= unbalanced)) { // no number counts as the worst
-      unbalanced = other.unbalanced;
-      cell = other.cell;
-   }
-   atWork = std::max(atWork, other.atWork);
-}
-
 Balance::Balance(const sdk::SceneView &scene, const Options &options, Couplings couplings)
     : m_assembly(scene, options), m_pitch(scene.pitch()), m_actuation(scene, m_assembly),
       m_supports(scene, m_assembly), m_couplings(std::move(couplings))
@@ -121,9 +135,8 @@ Balance::Balance(const sdk::SceneView &scene, const Options &options, Couplings 
       for (const double length : m_assembly.length)
          m_pitch = std::max(m_pitch, length);
    }
-   for (std::int64_t i = 0; i < m_assembly.links; ++i)
-      m_floor = std::max(m_floor, 1e-18 * m_assembly.constants[i].k[0] * m_assembly.length[i]);
-   apply(scene.channels());
+   if (m_assembly.hasLoads)
+      setLoads(scene.channel("force", 6));
 }
 
 std::string Balance::name(std::int64_t cell) const
@@ -132,23 +145,28 @@ std::string Balance::name(std::int64_t cell) const
    return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
 }
 
+void Balance::setLoads(const sdk::Channel &loads)
+{
+   m_force.assign(static_cast<std::size_t>(6 * m_assembly.cells), 0);
+   for (std::int64_t i = 0; i < loads.count(); ++i)
+      for (int k = 0; k < 6; ++k)
+         m_force[6 * loads.where(i) + k] += loads.row(i)[k];
+}
+
 void Balance::apply(std::span<const diatom_channel> channels)
 {
    for (const diatom_channel &channel : channels) {
       const std::string_view name = channel.name;
-      if (name == "force" && m_assembly.hasLoads) {
-         const auto loads = sdk::findChannel(channels, name, 6, m_assembly.cells);
-         m_force.assign(static_cast<std::size_t>(6 * m_assembly.cells), 0);
-         for (std::int64_t i = 0; i < loads.count(); ++i)
-            for (int k = 0; k < 6; ++k)
-               m_force[6 * loads.where(i) + k] += loads.row(i)[k];
-      } else if (name == "source") {
+      if (name == "force" && m_assembly.hasLoads)
+         setLoads(sdk::findChannel(channels, name, 6, m_assembly.cells));
+      else if (name == "source")
          m_actuation.setSources(sdk::findChannel(channels, name, 6, -1));
-      } else if (name == "curve") {
+      else if (name == "curve")
          m_supports.setCurves(channels);
-      } else if (name == "gravity" && m_assembly.hasGravity && channel.count == 1) {
+      else if (name == "gravity" && m_assembly.hasGravity && channel.count == 1)
          std::copy_n(sdk::findChannel(channels, name, 3, -1).row(0), 3, m_assembly.gravity.begin());
-      }
+      else
+         throw Failure(DIATOM_UNSUPPORTED, "a change of \"" + std::string(name) + "\" needs a new run");
    }
 }
 
@@ -166,18 +184,22 @@ Loading Balance::loadingAt(double time) const
    return out;
 }
 
-Loading Balance::unloaded() const
+Loading Balance::unloaded(const State &state) const
 {
    Loading out;
    out.force.assign(m_force.size(), 0);
    if (m_actuation.active())
       out.rest = m_actuation.shape();
-   out.driven.assign(m_supports.driven().size(), 0);
+   for (const Driven &driven : m_supports.driven()) {
+      const Vec3 u = state.displacementOf(driven.cell), turn = logarithm(state.turnOf(driven.cell));
+      const double at[6] = {u.x, u.y, u.z, turn.x, turn.y, turn.z};
+      out.driven.push_back(at[driven.freedom]);
+   }
    return out;
 }
 
 double Balance::cellForces(std::int64_t cell, const State &state, const RestShape &rest, bool rates,
-                           double *out, double &atWork) const
+                           double *out, Measure &measure) const
 {
    double power = 0;
    std::fill_n(out, 6, 0.0);
@@ -191,10 +213,11 @@ double Balance::cellForces(std::int64_t cell, const State &state, const RestShap
       const Vec3 torque = atB ? f.torqueB : f.torqueA;
       put(out, transposed(frame, f.force), atB ? -1 : 1);
       put(out + 3, transposed(frame, torque), 1);
-      atWork = std::max({atWork, norm(f.force), norm(torque) / m_pitch});
+      measure.atWork = std::max({measure.atWork, norm(f.force), norm(torque) / m_pitch});
+      measure.rounding = std::max(measure.rounding, roundingOf(m_assembly, state, bond));
       if (!rest.d[0].empty())
-         atWork = std::max(atWork, blockedForce(k, stretchOf(m_assembly, rest, bond), turnOf(rest, bond),
-                                                m_assembly.length[bond]));
+         measure.atWork = std::max(measure.atWork, blockedForce(k, stretchOf(m_assembly, rest, bond),
+                                                                turnOf(rest, bond), m_assembly.length[bond]));
       if (rates && !atB)
          power += dampedPower(r, k, bondEnds<true>(m_assembly, state, bond, frame));
    }
@@ -202,11 +225,12 @@ double Balance::cellForces(std::int64_t cell, const State &state, const RestShap
 }
 
 double Balance::internal(const sdk::Call &call, const State &state, const Loading &loading, bool rates,
-                         Vector &out, double &atWork) const
+                         Vector &out, Measure &measure) const
 {
    out.resize(6 * m_assembly.cells);
    const auto pieces = static_cast<std::size_t>(piecesOf(m_assembly.cells));
-   Column power(pieces, 0), largest(pieces, 0);
+   Column power(pieces, 0);
+   std::vector<Measure> largest(pieces);
    forCells(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t piece) {
       for (std::int64_t i = begin; i < end; ++i)
          power[piece] += cellForces(i, state, loading.rest, rates, out.data() + 6 * i, largest[piece]);
@@ -214,7 +238,8 @@ double Balance::internal(const sdk::Call &call, const State &state, const Loadin
    double total = 0;
    for (std::size_t i = 0; i < pieces; ++i) {
       total += power[i];
-      atWork = std::max(atWork, largest[i]);
+      measure.atWork = std::max(measure.atWork, largest[i].atWork);
+      measure.rounding = std::max(measure.rounding, largest[i].rounding);
    }
    if (m_couplings.empty())
       return total;
@@ -226,16 +251,15 @@ double Balance::internal(const sdk::Call &call, const State &state, const Loadin
    for (std::int64_t i = 0; i < m_assembly.cells; ++i)
       for (int k = 0; k < 6; ++k) {
          out[6 * i + k] += forces[k][i];
-         atWork = std::max(atWork, std::abs(forces[k][i]) / (k < 3 ? 1 : m_pitch));
+         measure.atWork = std::max(measure.atWork, std::abs(forces[k][i]) / (k < 3 ? 1 : m_pitch));
       }
    return total;
 }
 
-void Balance::external(const State &state, const Loading &loading, Vector &out, double &atWork) const
+void Balance::external(const State &state, const Loading &loading, Vector &out, Measure &measure) const
 {
    const bool loads = !loading.force.empty();
    out.setZero(6 * m_assembly.cells);
-   atWork = std::max(atWork, m_floor);
    for (std::int64_t i = 0; i < m_assembly.cells; ++i) {
       double *f = out.data() + 6 * i;
       if (loads)
@@ -243,24 +267,29 @@ void Balance::external(const State &state, const Loading &loading, Vector &out, 
       put(f, loading.gravity, m_assembly.mass[i]);
       if (m_assembly.hasGround)
          f[2] += m_assembly.ground.stiffness * std::max(0.0, penetration(m_assembly, state, i));
-      atWork = std::max({atWork, norm({f[0], f[1], f[2]}), norm({f[3], f[4], f[5]}) / m_pitch});
+      measure.atWork =
+          std::max({measure.atWork, norm({f[0], f[1], f[2]}), norm({f[3], f[4], f[5]}) / m_pitch});
    }
 }
 
-Measure Balance::measure(const Vector &residual, double atWork) const
+void Balance::weigh(const Vector &residual, Measure &measure) const
 {
-   Measure out;
-   out.atWork = atWork;
+   measure.unbalanced = 0;
    const Vector &free = m_supports.free();
    for (std::int64_t i = 0; i < m_assembly.cells; ++i)
       for (int k = 0; k < 6; ++k) {
          const double size = std::abs(residual[6 * i + k] * free[6 * i + k]) / (k < 3 ? 1 : m_pitch);
-         if (!(size <= out.unbalanced)) {
-            out.unbalanced = size;
-            out.cell = i;
+         if (!(size <= measure.unbalanced)) { // no number counts as the worst
+            measure.unbalanced = size;
+            measure.cell = i;
          }
       }
-   return out;
+}
+
+bool Balance::stands(const State &state, std::int64_t cell) const
+{
+   constexpr double kTouching = 1e-9; // of the pitch
+   return m_assembly.hasGround && penetration(m_assembly, state, cell) >= -kTouching * m_pitch;
 }
 
 BlockMatrix Balance::pattern() const
@@ -307,7 +336,7 @@ void Balance::cellStiffness(std::int64_t cell, const State &state, const RestSha
          column(change[2], 1, (atB ? own : other).col(3 + j).data());
       }
    }
-   if (m_assembly.hasGround && penetration(m_assembly, state, cell) > 0)
+   if (stands(state, cell))
       own(2, 2) += m_assembly.ground.stiffness;
 }
 
@@ -349,6 +378,15 @@ double Balance::contactEnergy(const State &state) const
       const double depth = std::max(0.0, penetration(m_assembly, state, i));
       sum += 0.5 * m_assembly.ground.stiffness * depth * depth;
    }
+   return sum;
+}
+
+double Balance::gravityEnergy(const State &state) const
+{
+   double sum = 0;
+   const Vec3 g{m_assembly.gravity[0], m_assembly.gravity[1], m_assembly.gravity[2]};
+   for (std::int64_t i = 0; m_assembly.hasGravity && i < m_assembly.cells; ++i)
+      sum -= m_assembly.mass[i] * dot(g, state.displacementOf(i));
    return sum;
 }
 

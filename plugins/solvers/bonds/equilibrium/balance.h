@@ -23,9 +23,10 @@ Loading blend(const Loading &a, const Loading &b, double f);
 struct Measure
 {
    double unbalanced = 0, atWork = 0; // N; moments count over the pitch
+   double rounding = 0;               // N: what the last digits of the displacements are worth
    std::int64_t cell = -1;            // the worst
+   bool within(double tolerance) const { return unbalanced <= std::max(tolerance * atWork, rounding); }
    double relative() const { return atWork > 0 ? unbalanced / atWork : 0; }
-   void add(const Measure &other);
 };
 
 class Balance
@@ -44,20 +45,23 @@ public:
 
    /// Loads, signals and curves as they are at a time.
    Loading loadingAt(double time) const;
-   /// The scene before anything pulls at it.
-   Loading unloaded() const;
-   /// New loads, supports or signals.
+   /// The scene before anything pulls at it, with the driven degrees of freedom where `state` has them.
+   Loading unloaded(const State &state) const;
+   /// New loads, curves or signals; throws Failure(DIATOM_UNSUPPORTED) for what needs a new run.
    void apply(std::span<const diatom_channel> channels);
    const Actuation &actuation() const { return m_actuation; }
 
    /// Force and moment of bonds and couplings on every cell; `rates` counts damping. Returns the power that
-   /// damping takes (W); `atWork` gets the largest of the single forces.
+   /// damping takes (W); `measure` gets the largest of the single forces and their rounding.
    double internal(const sdk::Call &call, const State &state, const Loading &loading, bool rates, Vector &out,
-                   double &atWork) const;
+                   Measure &measure) const;
    /// Gravity, loads and ground.
-   void external(const State &state, const Loading &loading, Vector &out, double &atWork) const;
+   void external(const State &state, const Loading &loading, Vector &out, Measure &measure) const;
    /// The largest unbalanced force of free degrees of freedom.
-   Measure measure(const Vector &residual, double atWork) const;
+   void weigh(const Vector &residual, Measure &measure) const;
+
+   /// Whether a cell touches the ground: one that lies on it unloaded counts.
+   bool stands(const State &state, std::int64_t cell) const;
 
    BlockMatrix pattern() const;
    /// Exact derivative of the negative forces by displacement and spin. `dampingOverTime` (1/s) times the
@@ -65,13 +69,16 @@ public:
    void stiffness(const sdk::Call &call, const State &state, const Loading &loading, double dampingOverTime,
                   BlockMatrix &out) const;
 
+   // J
    double elasticEnergy(const State &state, const RestShape &rest) const;
    double contactEnergy(const State &state) const;
+   double gravityEnergy(const State &state) const;
 
 private:
+   void setLoads(const sdk::Channel &loads);
    std::int64_t bondsEnd(std::int64_t cell) const { return m_assembly.first[cell + 1]; }
    double cellForces(std::int64_t cell, const State &state, const RestShape &rest, bool rates, double *out,
-                     double &atWork) const;
+                     Measure &measure) const;
    void cellStiffness(std::int64_t cell, const State &state, const RestShape &rest, double dampingOverTime,
                       BlockMatrix &out) const;
 
@@ -82,8 +89,10 @@ private:
    Supports m_supports;
    Couplings m_couplings;
    Column m_force;
-   double m_floor = 0; // N: forces below this are rounding
 };
+
+/// Rotation vector of a unit quaternion, the shorter of the two.
+Vec3 logarithm(Quat q);
 
 /// Moves by `factor` times the displacements and spins in `change`.
 void advance(const State &from, const Vector &change, double factor, State &to);

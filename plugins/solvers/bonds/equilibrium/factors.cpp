@@ -27,7 +27,7 @@ public:
 private:
    Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> m_solver;
    Sparse m_lower;
-   std::vector<std::int64_t> m_freedom;            // of each row: 6 * cell + k
+   std::vector<std::int64_t> m_freedom;             // of each row: 6 * cell + k
    std::vector<std::array<std::int64_t, 2>> m_from; // of each stored value: mirror values of the block matrix
    std::int64_t m_negative = 0, m_singular = -1;
    std::int64_t m_size = 0;
@@ -68,8 +68,8 @@ Factors::Factors(const BlockMatrix &pattern, const Vector &free, const std::vect
    }
    const auto n = static_cast<Eigen::Index>(m_freedom.size());
    const std::vector<double> zero(inner.size(), 0.0);
-   m_lower = Eigen::Map<const Sparse>(n, n, static_cast<Eigen::Index>(inner.size()), outer.data(), inner.data(),
-                                      zero.data());
+   m_lower = Eigen::Map<const Sparse>(n, n, static_cast<Eigen::Index>(inner.size()), outer.data(),
+                                      inner.data(), zero.data());
    m_solver.analyzePattern(m_lower);
 }
 

@@ -7,7 +7,8 @@ namespace bonds {
 
 namespace {
 
-void multiply(const sdk::Call &call, const BlockMatrix &matrix, const Vector &free, const Vector &x, Vector &y)
+void multiply(const sdk::Call &call, const BlockMatrix &matrix, const Vector &free, const Vector &x,
+              Vector &y)
 {
    matrix.multiply(call, x, y);
    y.array() *= free.array();

@@ -73,9 +73,9 @@ private:
    Vector m_free;
    std::vector<Block> m_diagonal; // inverses
    std::vector<std::int32_t> m_aggregate;
-   Places m_arm;     // from the aggregate's middle to the cell
-   Places m_middle;  // of each aggregate
-   Column m_members; // of each aggregate
+   Places m_arm;                       // from the aggregate's middle to the cell
+   Places m_middle;                    // of each aggregate
+   Column m_members;                   // of each aggregate
    std::vector<std::int64_t> m_target; // coarse block of each block
    BlockMatrix m_coarse;
    std::unique_ptr<Inverse> m_next;
@@ -141,7 +141,8 @@ void Multigrid::compute(const sdk::Call &call, const BlockMatrix &matrix, const 
       for (std::int64_t i = from; i < to; ++i) {
          const auto free = m_free.segment<6>(6 * i);
          for (std::int64_t e = matrix.begin(i); e < matrix.end(i); ++e)
-            m_matrix[e] = free.asDiagonal() * matrix[e] * m_free.segment<6>(6 * matrix.column(e)).asDiagonal();
+            m_matrix[e] =
+                free.asDiagonal() * matrix[e] * m_free.segment<6>(6 * matrix.column(e)).asDiagonal();
          auto own = m_matrix[matrix.diagonal(i)];
          own = (0.5 * (own + own.transpose())).eval();
          own.diagonal() += Part::Ones() - free;

@@ -21,14 +21,17 @@ bool passesHalfTurn(const Assembly &assembly, const State &from, const State &to
    const auto cosine = [](Quat a, Quat b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; };
    for (std::int64_t i = 0; i < assembly.links; ++i) {
       const std::int64_t a = assembly.a[i], b = assembly.b[i];
-      const double before = cosine(from.turnOf(a), from.turnOf(b)), after = cosine(to.turnOf(a), to.turnOf(b));
+      const double before = cosine(from.turnOf(a), from.turnOf(b)),
+                   after = cosine(to.turnOf(a), to.turnOf(b));
       if (!(before * after > 0))
          return true;
    }
    return false;
 }
 
-Places places(const Assembly &assembly, const State &state)
+} // namespace
+
+Places placesOf(const Assembly &assembly, const State &state)
 {
    Places out(3, assembly.cells);
    for (std::int64_t i = 0; i < assembly.cells; ++i)
@@ -37,14 +40,11 @@ Places places(const Assembly &assembly, const State &state)
    return out;
 }
 
-} // namespace
-
 Newton::Newton(const Balance &balance)
     : m_balance(&balance), m_matrix(balance.pattern()),
       m_inverse(makeInverse(m_matrix, balance.supports().free(),
-                            places(balance.assembly(), State(balance.assembly().cells))))
-{
-}
+                            placesOf(balance.assembly(), State(balance.assembly().cells))))
+{}
 
 double Newton::size(const Vector &change) const
 {
@@ -61,15 +61,16 @@ double Newton::longest(const Vector &change) const
    const Assembly &assembly = m_balance->assembly();
    double most = 0;
    for (std::int64_t i = 0; i < assembly.links; ++i)
-      most = std::max(most, (change.segment<3>(6 * assembly.b[i] + 3) - change.segment<3>(6 * assembly.a[i] + 3))
-                                .squaredNorm());
+      most =
+          std::max(most, (change.segment<3>(6 * assembly.b[i] + 3) - change.segment<3>(6 * assembly.a[i] + 3))
+                             .squaredNorm());
    return std::sqrt(most);
 }
 
 Inverse &Newton::prepare(const sdk::Call &call, Equations &equations, const State &state)
 {
    equations.tangent(call, state, m_matrix);
-   m_inverse->compute(call, m_matrix, places(m_balance->assembly(), state));
+   m_inverse->compute(call, m_matrix, placesOf(m_balance->assembly(), state));
    m_symmetric = true;
    for (std::int64_t i = 0; i < m_matrix.rows() && m_symmetric; ++i) {
       const auto own = m_matrix[m_matrix.diagonal(i)];
@@ -176,7 +177,7 @@ NewtonResult Newton::solve(const sdk::Call &call, Equations &equations, State &s
       out.measure = pass.measure;
       return out;
    };
-   while (pass.prescribed.size() > 0 || !(pass.measure.relative() <= tolerance)) {
+   while (pass.prescribed.size() > 0 || !pass.measure.within(tolerance)) {
       if (call.cancelled())
          return end(NewtonResult::End::cancelled);
       if (out.iterations++ == kMostIterations)
@@ -207,7 +208,6 @@ NewtonResult Newton::solve(const sdk::Call &call, Equations &equations, State &s
    }
    if (out.iterations > 0 && m_inverse->exact())
       polish(call, equations, pass, state);
-   out.negative = out.iterations > 0 ? m_inverse->negative() : -1;
    return end(NewtonResult::End::converged);
 }
 

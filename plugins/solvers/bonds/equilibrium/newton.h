@@ -8,6 +8,9 @@
 
 namespace bonds {
 
+/// Where the cells are.
+Places placesOf(const Assembly &assembly, const State &state);
+
 /// What is to vanish.
 class Equations
 {
@@ -25,8 +28,7 @@ struct NewtonResult
    End end = End::converged;
    int iterations = 0;
    Measure measure;
-   std::int64_t freedom = -1;  // that nothing holds
-   std::int64_t negative = -1; // unstable directions, -1 when unknown
+   std::int64_t freedom = -1; // that nothing holds
 };
 
 class Newton
