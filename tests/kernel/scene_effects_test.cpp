@@ -63,7 +63,25 @@ std::vector<Cause> causes()
            {"drag", [](Workbench &bench) { bench.setup.drag = 2; }},
            {"loads",
             [](Workbench &bench) {
-               bench.setup.loads.push_back({{0, 0, 0}, {1, 0, 0}, {}});
+               bench.setup.loads.push_back({Index{0, 0, 0}, {1, 0, 0}, {}});
+            }},
+           {"driven",
+            [](Workbench &bench) {
+               bench.setup.drives.push_back({Index{1, 0, 0}, 2, {{0, 0}, {1, 1e-3}}});
+            }},
+           {"solid",
+            [](Workbench &bench) {
+               Material rubber = test::material("rubber");
+               rubber.cellModel = CellModel::solid;
+               bench.add(rubber);
+               bench.put("rubber", {{0, 1, 0}});
+            }},
+           {"poisson",
+            [](Workbench &bench) {
+               Material rubber = test::material("rubber");
+               rubber.poissonCoupling = true;
+               bench.add(rubber);
+               bench.put("rubber", {{0, 1, 0}});
             }},
            {"orientation", [](Workbench &bench) {
                Material hinge = test::material("hinge");
@@ -88,6 +106,9 @@ private slots:
    void anUnusedMaterialIsNoCause();
    void frictionNeedsARoughGround();
    void silentOrUnwiredActuatorsDoNotActuate();
+   void poissonIsOffWithAReasonWhereItSaysNothing();
+   void whatSlowsMotionIsOffWithoutMotion();
+   void entriesAreEvidence();
    void theUserMaySwitchOffWhatTheSceneCallsFor();
    void theUserMaySwitchOnWhatContributesNothing();
    void whatThisVersionCannotDoIsNeverOn();
@@ -159,6 +180,73 @@ void SceneEffectsTest::silentOrUnwiredActuatorsDoNotActuate()
    QCOMPARE(effect.evidence, (std::vector<Index>{{5, 5, 5}}));
 }
 
+void SceneEffectsTest::poissonIsOffWithAReasonWhereItSaysNothing()
+{
+   const auto whyNot = [](const std::function<void(Material &)> &change, const std::vector<Index> &cells) {
+      Workbench bench;
+      Material rubber = test::material("rubber");
+      change(rubber);
+      bench.add(rubber);
+      bench.put("rubber", cells);
+      const Effect effect = effectOf(bench, "poisson");
+      return effect.on ? std::string("on") : effect.why;
+   };
+   const std::vector<Index> row{{0, 0, 0}, {1, 0, 0}}, block{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+   const auto contains = [](const std::string &text, const char *words) {
+      return text.find(words) != std::string::npos;
+   };
+   QCOMPARE(whyNot([](Material &m) { m.poissonCoupling = true; }, block), std::string("on"));
+   QVERIFY(contains(whyNot([](Material &m) { m.poissonCoupling = true; }, row), "single file"));
+   QVERIFY(contains(whyNot([](Material &) {}, block),
+                    "no material in use asks for it; sideways strain of rubber"));
+   QVERIFY(contains(whyNot([](Material &m) { m.poissonRatio = 0; }, block), "no bonded material in use has"));
+   QVERIFY(contains(whyNot(
+                        [](Material &m) {
+                           m.poissonCoupling = true;
+                           m.poissonRatio = 0;
+                        },
+                        block),
+                    "ask for it that have no Poisson's ratio"));
+   const char *inItself = "no Poisson's ratio for bonds to follow: rubber";
+   QVERIFY(contains(whyNot(
+                        [](Material &m) {
+                           m.poissonCoupling = true;
+                           m.cellModel = CellModel::solid;
+                        },
+                        block),
+                    inItself));
+}
+
+void SceneEffectsTest::whatSlowsMotionIsOffWithoutMotion()
+{
+   Workbench bench = twoCells();
+   Material damped = test::material("damped");
+   damped.dampingRatio = 0.1;
+   bench.add(damped);
+   bench.put("damped", {{0, 1, 0}});
+   bench.setup.drag = 3;
+   const Hierarchy hierarchy = bench.hierarchy();
+   const auto networks = findNetworks(hierarchy, bench.setup, bench.job);
+   for (const Analysis analysis : {Analysis::dynamics, Analysis::statics, Analysis::modes})
+      for (const Effect &effect : planEffects(hierarchy, bench.setup, networks, analysis))
+         if (effect.name == "damping" || effect.name == "drag")
+            QCOMPARE(effect.on, analysis == Analysis::dynamics);
+}
+
+void SceneEffectsTest::entriesAreEvidence()
+{
+   Workbench bench = twoCells();
+   bench.put("plain", {{2, 0, 0}, {3, 0, 0}});
+   bench.setup.loads = {{Index{3, 0, 0}, {}, {}}, // says nothing
+                        {Box{{1, 0, 0}, {9, 9, 9}}, {1, 0, 0}, {}},
+                        {OfMaterial{"plain"}, {1, 0, 0}, {}}};
+   const Effect loads = effectOf(bench, "loads");
+   QCOMPARE(loads.why, std::string("2 loads act, the first on box (1, 0, 0) to (9, 9, 9)"));
+   QCOMPARE(loads.evidence, (std::vector<Index>{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}}));
+   bench.setup.drives = {{Index{1, 0, 0}, 2, {{0, 0}}}};
+   QCOMPARE(effectOf(bench, "driven").why, std::string("one curve drives a freedom on cell (1, 0, 0)"));
+}
+
 void SceneEffectsTest::theUserMaySwitchOffWhatTheSceneCallsFor()
 {
    for (const Cause &cause : causes()) {
@@ -172,13 +260,13 @@ void SceneEffectsTest::theUserMaySwitchOffWhatTheSceneCallsFor()
 
 void SceneEffectsTest::theUserMaySwitchOnWhatContributesNothing()
 {
-   for (const char *name : {"damping", "gravity", "actuation", "drag", "loads"}) {
+   for (const char *name : {"damping", "gravity", "actuation", "drag", "loads", "driven", "poisson"}) {
       Workbench bench = twoCells();
       bench.setup.effects[name] = true;
       const Effect effect = effectOf(bench, name);
       QVERIFY2(effect.on && effect.forced, name);
    }
-   for (const char *name : {"ground", "friction"}) { // there is no plane to act on
+   for (const char *name : {"ground", "friction", "solid"}) { // there is nothing to act on
       Workbench bench = twoCells();
       bench.setup.effects[name] = true;
       QVERIFY2(!effectOf(bench, name).on, name);
@@ -187,7 +275,7 @@ void SceneEffectsTest::theUserMaySwitchOnWhatContributesNothing()
 
 void SceneEffectsTest::whatThisVersionCannotDoIsNeverOn()
 {
-   for (const char *name : {"electronics", "self-contact", "poisson", "potential-field"}) {
+   for (const char *name : {"electronics", "self-contact", "potential-field"}) {
       Workbench bench = twoCells();
       addActuator(bench);
       bench.setup.effects[name] = true;
