@@ -192,6 +192,7 @@ struct SolverChoice
 {
    std::string integrator = "semi_implicit", beam = "timoshenko", gradient = "exact";
    double safety = 0.9, forceStep = 0;
+   double loadSteps = 0, modes = 10, rho = 0.8;
 };
 
 /// A running solver.
@@ -200,10 +201,13 @@ class Run
 public:
    explicit Run(HandScene &scene, const SolverChoice &choice = {}, int threads = 1) : host(threads)
    {
-      const char *names[] = {"integrator", "beam", "gradient", "safety", "force_step"};
-      const double numbers[] = {0, 0, 0, choice.safety, choice.forceStep};
-      const char *texts[] = {choice.integrator.c_str(), choice.beam.c_str(), choice.gradient.c_str(), "", ""};
-      const diatom_values values{sizeof(diatom_values), 5, names, numbers, texts};
+      const char *names[] = {"integrator", "beam",       "gradient", "safety",
+                             "force_step", "load_steps", "modes",    "rho"};
+      const double numbers[] = {
+          0, 0, 0, choice.safety, choice.forceStep, choice.loadSteps, choice.modes, choice.rho};
+      const char *texts[] = {
+          choice.integrator.c_str(), choice.beam.c_str(), choice.gradient.c_str(), "", "", "", "", ""};
+      const diatom_values values{sizeof(diatom_values), 8, names, numbers, texts};
       const diatom_create create{sizeof(diatom_create), "org.diatom_cad.solver.bonds", "", &values};
       estimate.size = sizeof estimate;
       if (!table) {

@@ -59,6 +59,10 @@ ExplicitRun::ExplicitRun(const Options &options, const sdk::SceneView &scene)
                                                 {"momentum", "", 1, 6},
                                                 {"strain", "", m_assembly.cells, 1}}}
 {
+   if (scene.hasEffect("driven") || scene.channel("pose", 6))
+      throw Failure(DIATOM_UNSUPPORTED,
+                    "motion in time does not yet follow curves or start from a pose; ask for "
+                    "the static balance, or move the cells by forces");
    const Energies start = energiesNow();
    m_balance = start.stored();
    double stiffest = 0;

@@ -1,0 +1,410 @@
+// Each cell adds up its own bonds, in bond order: a bond is evaluated at both its ends, and nothing depends
+// on the number of threads.
+#include "equilibrium/balance.h"
+
+#include "model/bond_tangent.h"
+#include "model/contact.h"
+#include "solid/couplings.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace bonds {
+
+using sdk::Failure;
+
+namespace {
+
+Vec3 mixed(Vec3 a, Vec3 b, double f) { return a + f * (b - a); }
+
+void mix(const Column &a, const Column &b, double f, Column &out)
+{
+   out.resize(std::max(a.size(), b.size()));
+   for (std::size_t i = 0; i < out.size(); ++i) {
+      const double from = i < a.size() ? a[i] : 0, to = i < b.size() ? b[i] : 0;
+      out[i] = from + f * (to - from);
+   }
+}
+
+template<bool Rates>
+BondEnds bondEnds(const Assembly &assembly, const State &state, std::int64_t bond, const Mat3 &frame)
+{
+   const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
+   const auto local = [&](Quat q) {
+      const Vec3 v = frame * vec(q);
+      return Quat{q.w, v.x, v.y, v.z};
+   };
+   BondEnds ends;
+   ends.displacement = frame * (state.displacementOf(b) - state.displacementOf(a));
+   ends.length = assembly.length[bond];
+   ends.qa = local(state.turnOf(a));
+   ends.qb = local(state.turnOf(b));
+   if constexpr (Rates) {
+      ends.dv = frame * (state.velocityOf(b) - state.velocityOf(a));
+      ends.wa = frame * state.spinOf(a);
+      ends.wb = frame * state.spinOf(b);
+   }
+   return ends;
+}
+
+Vec3 stretchOf(const Assembly &assembly, const RestShape &rest, std::int64_t bond)
+{
+   if (rest.d[0].empty())
+      return {};
+   return rest.separation(bond) - Vec3{assembly.length[bond], 0, 0};
+}
+/// As couplings take it: none when nothing is driven.
+const RestShape *restOf(const RestShape &rest) { return rest.d[0].empty() ? nullptr : &rest; }
+Vec3 turnOf(const RestShape &rest, std::int64_t bond)
+{
+   return rest.phi[0].empty() ? Vec3{} : rest.turn(bond);
+}
+
+BondPoint pointOf(const Assembly &assembly, const State &state, const RestShape &rest, std::int64_t bond,
+                  const Mat3 &frame, bool rates)
+{
+   const BondConstants &k = assembly.constants[bond];
+   const Vec3 stretch = stretchOf(assembly, rest, bond), turn = turnOf(rest, bond);
+   return rates ? bondPoint<true>(bondEnds<true>(assembly, state, bond, frame), k, stretch, turn)
+                : bondPoint<false>(bondEnds<false>(assembly, state, bond, frame), k, stretch, turn);
+}
+
+double dampedPower(const BondPoint &r, const BondConstants &k, const BondEnds &ends)
+{
+   Vec3 d, phi, spin;
+   strainRates(r, k, transposed(r.middle, ends.dv), transposed(r.middle, ends.wa),
+               transposed(r.middle, ends.wb), d, phi, spin);
+   return dot(scaled(k.d, d), d) + dot(scaled(k.e, phi), phi);
+}
+
+void put(double *to, Vec3 v, double sign)
+{
+   to[0] += sign * v.x;
+   to[1] += sign * v.y;
+   to[2] += sign * v.z;
+}
+
+/// N that the last digits of a bond's displacements and turns are worth; several roundings meet in a cell.
+double roundingOf(const Assembly &assembly, const State &state, std::int64_t bond)
+{
+   constexpr double kDigits = 16 * std::numeric_limits<double>::epsilon();
+   const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
+   const BondConstants &k = assembly.constants[bond];
+   const double moved = norm(state.displacementOf(a)) + norm(state.displacementOf(b)),
+                turned = norm(vec(state.turnOf(a))) + norm(vec(state.turnOf(b)));
+   return kDigits * std::max({k.k[0], k.k[1], k.k[2]}) * (moved + turned * assembly.length[bond]);
+}
+
+/// Largest force that the actuated rest shape would call up if nothing could move.
+double blockedForce(const BondConstants &k, Vec3 stretch, Vec3 turn, double length)
+{
+   const Vec3 f = scaled(k.k, stretch), c = scaled(k.c, turn);
+   return std::max(norm(f), norm(c) / length);
+}
+
+} // namespace
+
+Vec3 logarithm(Quat q)
+{
+   const Vec3 v = q.w < 0 ? -vec(q) : vec(q);
+   double s = 1, p = 0;
+   arcRatio(dot(v, v), std::abs(q.w), s, p);
+   return (2 * s) * v;
+}
+
+Loading blend(const Loading &a, const Loading &b, double f)
+{
+   Loading out;
+   out.gravity = mixed(a.gravity, b.gravity, f);
+   mix(a.force, b.force, f, out.force);
+   mix(a.driven, b.driven, f, out.driven);
+   for (int k = 0; k < 3; ++k) {
+      mix(a.rest.d[k], b.rest.d[k], f, out.rest.d[k]);
+      mix(a.rest.phi[k], b.rest.phi[k], f, out.rest.phi[k]);
+   }
+   return out;
+}
+
+Balance::Balance(const sdk::SceneView &scene, const Options &options)
+    : m_assembly(scene, options), m_pitch(scene.pitch()), m_actuation(scene, m_assembly),
+      m_supports(scene, m_assembly), m_couplings(makeCouplings(scene, m_assembly))
+{
+   m_index.resize(static_cast<std::size_t>(m_assembly.cells));
+   for (std::int64_t i = 0; i < m_assembly.cells; ++i)
+      std::copy_n(scene.index(i), 3, m_index[i].begin());
+   if (m_assembly.links > 0) {
+      m_pitch = 0;
+      for (const double length : m_assembly.length)
+         m_pitch = std::max(m_pitch, length);
+   }
+   if (m_assembly.hasLoads)
+      setLoads(scene.channel("force", 6));
+}
+
+std::string Balance::name(std::int64_t cell) const
+{
+   const auto &at = m_index[cell];
+   return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
+}
+
+void Balance::setLoads(const sdk::Channel &loads)
+{
+   m_force.assign(static_cast<std::size_t>(6 * m_assembly.cells), 0);
+   for (std::int64_t i = 0; i < loads.count(); ++i)
+      for (int k = 0; k < 6; ++k)
+         m_force[6 * loads.where(i) + k] += loads.row(i)[k];
+}
+
+void Balance::apply(std::span<const diatom_channel> channels)
+{
+   for (const diatom_channel &channel : channels) {
+      const std::string_view name = channel.name;
+      if (name == "force" && m_assembly.hasLoads)
+         setLoads(sdk::findChannel(channels, name, 6, m_assembly.cells));
+      else if (name == "source")
+         m_actuation.setSources(sdk::findChannel(channels, name, 6, -1));
+      else if (name == "curve")
+         m_supports.setCurves(channels);
+      else if (name == "gravity" && m_assembly.hasGravity && channel.count == 1)
+         std::copy_n(sdk::findChannel(channels, name, 3, -1).row(0), 3, m_assembly.gravity.begin());
+      else
+         throw Failure(DIATOM_UNSUPPORTED, "a change of \"" + std::string(name) + "\" needs a new run");
+   }
+}
+
+Loading Balance::loadingAt(double time) const
+{
+   Loading out;
+   if (m_assembly.hasGravity)
+      out.gravity = {m_assembly.gravity[0], m_assembly.gravity[1], m_assembly.gravity[2]};
+   out.force = m_force;
+   if (m_actuation.active()) {
+      out.rest = m_actuation.shape();
+      m_actuation.setRest(time, out.rest);
+   }
+   out.driven = m_supports.targets(time);
+   return out;
+}
+
+Loading Balance::unloaded(const State &state) const
+{
+   Loading out;
+   out.force.assign(m_force.size(), 0);
+   if (m_actuation.active())
+      out.rest = m_actuation.shape();
+   for (const Driven &driven : m_supports.driven()) {
+      const Vec3 u = state.displacementOf(driven.cell), turn = logarithm(state.turnOf(driven.cell));
+      const double at[6] = {u.x, u.y, u.z, turn.x, turn.y, turn.z};
+      out.driven.push_back(at[driven.freedom]);
+   }
+   return out;
+}
+
+double Balance::cellForces(std::int64_t cell, const State &state, const RestShape &rest, bool rates,
+                           double *out, Measure &measure) const
+{
+   double power = 0;
+   std::fill_n(out, 6, 0.0);
+   for (std::int64_t e = m_assembly.first[cell]; e < bondsEnd(cell); ++e) {
+      const std::int64_t bond = m_assembly.bondsOf[e] / 2;
+      const bool atB = (m_assembly.bondsOf[e] & 1) != 0;
+      const Mat3 frame = m_assembly.frameOf(bond);
+      const BondConstants &k = m_assembly.constants[bond];
+      const BondPoint r = pointOf(m_assembly, state, rest, bond, frame, rates);
+      const EndForces f = endForces(r);
+      const Vec3 torque = atB ? f.torqueB : f.torqueA;
+      put(out, transposed(frame, f.force), atB ? -1 : 1);
+      put(out + 3, transposed(frame, torque), 1);
+      measure.atWork = std::max({measure.atWork, norm(f.force), norm(torque) / m_pitch});
+      measure.rounding = std::max(measure.rounding, roundingOf(m_assembly, state, bond));
+      if (!rest.d[0].empty())
+         measure.atWork = std::max(measure.atWork, blockedForce(k, stretchOf(m_assembly, rest, bond),
+                                                                turnOf(rest, bond), m_assembly.length[bond]));
+      if (rates && !atB)
+         power += dampedPower(r, k, bondEnds<true>(m_assembly, state, bond, frame));
+   }
+   return power;
+}
+
+double Balance::internal(const sdk::Call &call, const State &state, const Loading &loading, bool rates,
+                         Vector &out, Measure &measure) const
+{
+   out.resize(6 * m_assembly.cells);
+   const auto pieces = static_cast<std::size_t>(piecesOf(m_assembly.cells));
+   Column power(pieces, 0);
+   std::vector<Measure> largest(pieces);
+   forCells(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t piece) {
+      for (std::int64_t i = begin; i < end; ++i)
+         power[piece] += cellForces(i, state, loading.rest, rates, out.data() + 6 * i, largest[piece]);
+   });
+   double total = 0;
+   for (std::size_t i = 0; i < pieces; ++i) {
+      total += power[i];
+      measure.atWork = std::max(measure.atWork, largest[i].atWork);
+      measure.rounding = std::max(measure.rounding, largest[i].rounding);
+   }
+   if (m_couplings.empty())
+      return total;
+   CellForces forces;
+   for (Column &column : forces)
+      column.assign(static_cast<std::size_t>(m_assembly.cells), 0);
+   for (const auto &coupling : m_couplings)
+      total += coupling->addForces(call, state, restOf(loading.rest), forces);
+   for (std::int64_t i = 0; i < m_assembly.cells; ++i)
+      for (int k = 0; k < 6; ++k) {
+         out[6 * i + k] += forces[k][i];
+         measure.atWork = std::max(measure.atWork, std::abs(forces[k][i]) / (k < 3 ? 1 : m_pitch));
+      }
+   return total;
+}
+
+void Balance::external(const State &state, const Loading &loading, Vector &out, Measure &measure) const
+{
+   const bool loads = !loading.force.empty();
+   out.setZero(6 * m_assembly.cells);
+   for (std::int64_t i = 0; i < m_assembly.cells; ++i) {
+      double *f = out.data() + 6 * i;
+      if (loads)
+         std::copy_n(loading.force.begin() + 6 * i, 6, f);
+      put(f, loading.gravity, m_assembly.mass[i]);
+      measure.atWork =
+          std::max({measure.atWork, norm({f[0], f[1], f[2]}), norm({f[3], f[4], f[5]}) / m_pitch});
+      if (m_assembly.hasGround) // after the loads are weighed: what stands at rest has a sum of nothing
+         f[2] += m_assembly.ground.stiffness * std::max(0.0, penetration(m_assembly, state, i));
+   }
+}
+
+void Balance::weigh(const Vector &residual, Measure &measure) const
+{
+   measure.unbalanced = 0;
+   const Vector &free = m_supports.free();
+   for (std::int64_t i = 0; i < m_assembly.cells; ++i)
+      for (int k = 0; k < 6; ++k) {
+         const double size = std::abs(residual[6 * i + k] * free[6 * i + k]) / (k < 3 ? 1 : m_pitch);
+         if (!(size <= measure.unbalanced)) { // no number counts as the worst
+            measure.unbalanced = size;
+            measure.cell = i;
+         }
+      }
+}
+
+bool Balance::stands(const State &state, std::int64_t cell) const
+{
+   constexpr double kTouching = 1e-9; // of the pitch
+   return m_assembly.hasGround && penetration(m_assembly, state, cell) >= -kTouching * m_pitch;
+}
+
+BlockMatrix Balance::pattern() const
+{
+   std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+   for (std::int64_t i = 0; i < m_assembly.links; ++i)
+      pairs.emplace_back(m_assembly.a[i], m_assembly.b[i]);
+   const State rest(m_assembly.cells);
+   for (const auto &coupling : m_couplings)
+      coupling->addStiffness(rest, nullptr, [&](std::int64_t row, std::int64_t column, const double *) {
+         if (row < column)
+            pairs.emplace_back(static_cast<std::int32_t>(row), static_cast<std::int32_t>(column));
+      });
+   return {m_assembly.cells, pairs};
+}
+
+void Balance::cellStiffness(std::int64_t cell, const State &state, const RestShape &rest,
+                            double dampingOverTime, BlockMatrix &out) const
+{
+   auto own = out[out.diagonal(cell)];
+   for (std::int64_t e = m_assembly.first[cell]; e < bondsEnd(cell); ++e) {
+      const std::int64_t bond = m_assembly.bondsOf[e] / 2;
+      const bool atB = (m_assembly.bondsOf[e] & 1) != 0;
+      const Mat3 frame = m_assembly.frameOf(bond);
+      const BondPoint r = pointOf(m_assembly, state, rest, bond, frame, false);
+      BondConstants k = m_assembly.constants[bond];
+      for (int j = 0; j < 3; ++j) {
+         k.k[j] += dampingOverTime * k.d[j];
+         k.c[j] += dampingOverTime * k.e[j];
+      }
+      auto other = out[out.find(cell, atB ? m_assembly.a[bond] : m_assembly.b[bond])];
+      constexpr Vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+      for (int j = 0; j < 3; ++j) {
+         const Vec3 along = transposed(r.middle, frame * unit[j]);
+         const EndForces change[3] = {forceChange(r, k, along, {}, {}), forceChange(r, k, {}, along, {}),
+                                      forceChange(r, k, {}, {}, along)};
+         const auto column = [&](const EndForces &f, double sign, double *to) {
+            put(to, transposed(frame, r.middle * f.force), atB ? sign : -sign);
+            put(to + 3, transposed(frame, r.middle * (atB ? f.torqueB : f.torqueA)), -sign);
+         };
+         column(change[0], atB ? 1 : -1, own.col(j).data());
+         column(change[0], atB ? -1 : 1, other.col(j).data());
+         column(change[1], 1, (atB ? other : own).col(3 + j).data());
+         column(change[2], 1, (atB ? own : other).col(3 + j).data());
+      }
+   }
+   if (stands(state, cell))
+      own(2, 2) += m_assembly.ground.stiffness;
+}
+
+void Balance::stiffness(const sdk::Call &call, const State &state, const Loading &loading,
+                        double dampingOverTime, BlockMatrix &out) const
+{
+   forCells(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
+      for (std::int64_t i = begin; i < end; ++i) {
+         out.clearRow(i);
+         cellStiffness(i, state, loading.rest, dampingOverTime, out);
+      }
+   });
+   for (const auto &coupling : m_couplings)
+      coupling->addStiffness(state, restOf(loading.rest),
+                             [&](std::int64_t row, std::int64_t column, const double *block) {
+                                out[out.find(row, column)] +=
+                                    Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(block);
+                             });
+}
+
+double Balance::elasticEnergy(const State &state, const RestShape &rest) const
+{
+   double sum = 0;
+   for (std::int64_t i = 0; i < m_assembly.links; ++i) {
+      const BondConstants &k = m_assembly.constants[i];
+      const BondPoint r = bondGeometry(bondEnds<false>(m_assembly, state, i, m_assembly.frameOf(i)));
+      const Vec3 phi = r.phi - turnOf(rest, i);
+      Vec3 d = r.stretch - stretchOf(m_assembly, rest, i);
+      detail::couple(k, phi, d);
+      sum += 0.5 * (dot(scaled(k.k, d), d) + dot(scaled(k.c, phi), phi));
+   }
+   for (const auto &coupling : m_couplings)
+      sum += coupling->energy(state, restOf(rest));
+   return sum;
+}
+
+double Balance::contactEnergy(const State &state) const
+{
+   double sum = 0;
+   for (std::int64_t i = 0; m_assembly.hasGround && i < m_assembly.cells; ++i) {
+      const double depth = std::max(0.0, penetration(m_assembly, state, i));
+      sum += 0.5 * m_assembly.ground.stiffness * depth * depth;
+   }
+   return sum;
+}
+
+double Balance::gravityEnergy(const State &state) const
+{
+   double sum = 0;
+   const Vec3 g{m_assembly.gravity[0], m_assembly.gravity[1], m_assembly.gravity[2]};
+   for (std::int64_t i = 0; m_assembly.hasGravity && i < m_assembly.cells; ++i)
+      sum -= m_assembly.mass[i] * dot(g, state.displacementOf(i));
+   return sum;
+}
+
+void advance(const State &from, const Vector &change, double factor, State &to)
+{
+   for (std::int64_t i = 0; i < from.n; ++i) {
+      const double *d = change.data() + 6 * i;
+      for (int k = 0; k < 3; ++k)
+         to.column(k)[i] = from.column(k)[i] + factor * d[k];
+      const Quat q = exponential(factor * Vec3{d[3], d[4], d[5]}) * from.turnOf(i);
+      const double f = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+      to.setTurn(i, {f * q.w, f * q.x, f * q.y, f * q.z});
+   }
+}
+
+} // namespace bonds

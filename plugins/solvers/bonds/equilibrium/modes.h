@@ -1,0 +1,25 @@
+// The lowest vibrations about a balance: K x = w^2 M x by shift-invert Lanczos with several starting vectors,
+// so that repeated frequencies are found as often as they are there (Grimes, Lewis and Simon, SIAM J. Matrix
+// Anal. Appl. 15, 1994), and with full orthogonalisation.
+#pragma once
+
+#include "equilibrium/newton.h"
+
+namespace bonds {
+
+struct ModeShapes
+{
+   Column eigenvalue;         // rad2/s2, ascending
+   std::vector<Vector> shape; // displacement and turn of every cell, of unit modal mass
+   bool cancelled = false;
+   bool complete = true; // all that were wanted are as sharp as wanted
+};
+
+/// Symmetric mass of every cell, 6 x 6: that of spins turns with the cell. `free` cuts held ones out.
+std::vector<Block> massBlocks(const Balance &balance, const State &state);
+
+/// At most `wanted` of them.
+ModeShapes lowestModes(const sdk::Call &call, const Balance &balance, const State &state,
+                       const Loading &loading, std::int64_t wanted);
+
+} // namespace bonds
