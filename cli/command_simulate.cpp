@@ -1,4 +1,5 @@
 // diatom simulate: motion in time, with a record, probes and an account of the energy.
+#include "cli/accuracy_option.h"
 #include "cli/commands.h"
 #include "cli/recorder.h"
 #include "cli/scene_json.h"
@@ -20,8 +21,8 @@ constexpr double kMostRows = 1e7;
 
 struct Options
 {
-   std::string file, integrator, beam, gradient, step, effects, record, state;
-   double until = 0, every = 0;
+   std::string file, integrator, beam, gradient, step, effects, record, state, accuracy;
+   double until = 0, every = 0, probeBudget = 30;
    std::optional<double> drag;
    std::vector<std::string> probes, settings;
    bool force = false;
@@ -165,6 +166,27 @@ Result<Started> start(const Context::Input &input, const Options &options, Conte
    return started;
 }
 
+/// Settings by --accuracy; nothing where it was not asked for.
+Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::Input &input, Context &context)
+{
+   if (options.accuracy.empty())
+      return std::optional<AccuracyChoice>();
+   if (!options.step.empty() || options.force)
+      return Error{ErrorCode::usage, "--accuracy chooses the step: leave out --step and --force-step"};
+   const auto error = parseAccuracy(options.accuracy);
+   if (!error)
+      return error.error();
+   AccuracyAsked asked{*error, options.until, "", options.probeBudget, {}};
+   if (!options.probes.empty())
+      asked.quantity = options.probes.front();
+   if (!options.integrator.empty())
+      asked.fixed["integrator"] = options.integrator;
+   auto choice = applyAccuracy(asked, input, input.opened.design.setup, context);
+   if (!choice)
+      return choice.error();
+   return std::optional(*std::move(choice));
+}
+
 void simulate(const Options &options, Context &context)
 {
    auto opened = openDesign(options.file, context.job());
@@ -177,6 +199,9 @@ void simulate(const Options &options, Context &context)
    const auto input = context.prepare(*std::move(opened));
    if (!input)
       return;
+   const auto choice = choose(options, *input, context);
+   if (!choice)
+      return context.fail(choice.error());
    auto started = start(*input, options, context);
    if (!started)
       return context.fail(started.error());
@@ -202,6 +227,8 @@ void simulate(const Options &options, Context &context)
    auto object = summary(simulation, started->probes, status, calm);
    if (!object)
       return context.fail(object.error());
+   if (*choice)
+      (*object)["accuracy"] = choiceJson(**choice, simulation.wallSeconds());
    if (!context.json)
       (*object)["effects"] = effectLines(simulation.scene().effects());
    context.print(*object);
@@ -227,6 +254,14 @@ void addSimulate(CLI::App &app, Context &context)
    command->add_option("--gradient", options->gradient, "Torques: exact or simple");
    command->add_option("--step", options->step,
                        "Time step in s, or auto for the stable one (default: the design's)");
+   command->add_option(
+       "--accuracy", options->accuracy,
+       "Choose integrator, precision and step: the cheapest that keep the first --probe, else "
+       "the cell that moves most, within this error, as 1% or 0.01");
+   command
+       ->add_option("--probe-budget", options->probeBudget,
+                    "Wall time, s, that --accuracy may spend on each setting it considers")
+       ->check(CLI::PositiveNumber);
    command->add_flag("--force-step", options->force, "Accept a step beyond the stable limit");
    command->add_option("--effects", options->effects, "auto, or +NAME,-NAME to switch effects on and off");
    command->add_option("--drag", options->drag, "Slow all motion, 1/s: settles a design to rest")
@@ -243,6 +278,7 @@ void addSimulate(CLI::App &app, Context &context)
                     "Change PATH=VALUE for this run, e.g. gravity.z=-9.81; repeats")
        ->allow_extra_args(false);
    command->footer("Examples:\n  diatom simulate beam.diatom --until 0.5 --record out.csv --probe 0,13,0:z\n"
+                   "  diatom simulate beam.diatom --until 0.5 --probe 0,13,0:z --accuracy 1%\n"
                    "  diatom simulate gripper.json --until 0.2 --step auto --effects=-gravity --json");
    command->callback([options, &context] { simulate(*options, context); });
 }

@@ -41,6 +41,12 @@ Support readSupport(const JsonPlace &place)
    return {place.at("cell").index(), place.has("fixed") ? readFixed(place.at("fixed")) : kAllFixed};
 }
 
+Reference readReference(const JsonPlace &place)
+{
+   place.known({"quantity", "value", "source"});
+   return {place.at("quantity").text(), place.at("value").number(), place.textOr("source", "")};
+}
+
 } // namespace
 
 ordered_json indexJson(Index index) { return ordered_json::array({index.x, index.y, index.z}); }
@@ -158,6 +164,9 @@ ordered_json setupJson(const Setup &setup)
    json["drag_1_s"] = setup.drag;
    json["step_s"] = setup.step;
    json["solver"] = {{"id", setup.solver}, {"values", valuesJson(setup.solverValues)}};
+   for (const Reference &reference : setup.references)
+      json["references"].push_back(
+          {{"quantity", reference.quantity}, {"value", reference.value}, {"source", reference.source}});
    if (!setup.effects.empty())
       json["effects"] = setup.effects;
    return json;
@@ -177,8 +186,8 @@ Setup readSetup(const JsonPlace &place)
    Setup setup;
    if (!place.object())
       return setup;
-   place.known(
-       {"gravity_m_s2", "supports", "loads", "sources", "ground", "drag_1_s", "step_s", "solver", "effects"});
+   place.known({"gravity_m_s2", "supports", "loads", "sources", "ground", "drag_1_s", "step_s", "solver",
+                "references", "effects"});
    if (place.has("gravity_m_s2"))
       setup.gravity = place.at("gravity_m_s2").numbers3();
    if (place.has("supports"))
@@ -198,6 +207,8 @@ Setup readSetup(const JsonPlace &place)
       if (solver.has("values"))
          setup.solverValues = solver.at("values").values();
    }
+   if (place.has("references"))
+      setup.references = readList<Reference>(place.at("references"), readReference);
    if (place.has("effects") && place.at("effects").object()) {
       const auto effects = place.at("effects");
       for (const auto &[name, forced] : effects.json().items())

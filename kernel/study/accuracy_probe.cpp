@@ -21,6 +21,8 @@ constexpr double kPilotShare = 0.1;      // of the budget, for timing a step
 constexpr double kRunsShare = 0.85;      // of the budget, for the runs
 /// A run this many times the window is as far as a growth seen within the window is carried on.
 constexpr double kFarthest = 16;
+/// Of the coarsest step: a law seen over a factor of four is not carried on further than this.
+constexpr double kFinest = 1.0 / 256;
 /// Phase errors grow as time, those of a motion under way as its square; anything faster is chaos.
 constexpr double kFastestGrowth = 3;
 
@@ -29,42 +31,14 @@ double secondsSince(Clock::time_point start)
    return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Of a step at the given length: median over batches of some steps, after a first one that warms up.
-Result<double> timeStep(const Subject &subject, const Values &values, double step, double until,
-                        double seconds, const Job &job)
-{
-   constexpr double kBatch = 8;
-   auto simulation = startTrial(subject, values, step, job);
-   if (!simulation)
-      return simulation.error();
-   (*simulation)->setGoal(until);
-   std::vector<double> times;
-   const auto start = Clock::now();
-   for (double batch = 1; times.size() < 3 || (secondsSince(start) < seconds && times.size() < 200); ++batch)
-   {
-      const double goal = std::min(batch * kBatch * step, until);
-      const std::int64_t before = (*simulation)->steps();
-      const auto begun = Clock::now();
-      if (const Status advanced = (*simulation)->advance(goal, job); !advanced)
-         return advanced.error();
-      const std::int64_t done = (*simulation)->steps() - before;
-      if (done == 0)
-         break;
-      times.push_back(secondsSince(begun) / static_cast<double>(done));
-   }
-   if (times.size() > 2)
-      times.erase(times.begin());
-   return median(times);
-}
-
 Convergence judgeRuns(const Quantity &quantity, const std::array<TrialRun, 3> &runs, double until)
 {
-   const Curve &coarse = runs[0].curve, &middle = runs[1].curve, &fine = runs[2].curve;
+   const History &coarse = runs[0].curve, &middle = runs[1].curve, &fine = runs[2].curve;
    if (quantity.when == Quantity::When::atTime && until >= fine.time.back())
       return convergenceOf(coarse.value.back(), middle.value.back(), fine.value.back());
    if (quantity.when != Quantity::When::frequency)
       return convergenceOf(coarse, middle, fine, until);
-   const auto a = curveFrequency(coarse), b = curveFrequency(middle), c = curveFrequency(fine);
+   const auto a = historyFrequency(coarse), b = historyFrequency(middle), c = historyFrequency(fine);
    return a && b && c ? convergenceOf(*a, *b, *c) : Convergence{};
 }
 
@@ -93,12 +67,12 @@ Estimate errorOf(const AccuracyProbe &probe, double step, bool run)
                                 fixedText(probe.convergence.order.value_or(0), 1))};
    if (longer > kFarthest || !probe.growth || *probe.growth > kFastestGrowth)
       return {0, Knowledge::unknown,
-              fmt::format("only the first {} s of {} s were tried, where it is {} %",
-                          numberText(probe.window), numberText(probe.errorUntil),
-                          fixedText(100 * *within, 4))};
-   return {*within * std::pow(longer, *probe.growth), Knowledge::predicted,
-           fmt::format("carried on from the first {} s, where it is {} % and grows as time to the power {}",
-                       numberText(probe.window), fixedText(100 * *within, 4), fixedText(*probe.growth, 1))};
+              fmt::format("only the first {:.3g} s of {:.3g} s were tried, where it is {} %", probe.window,
+                          probe.errorUntil, fixedText(100 * *within, 4))};
+   return {
+       *within * std::pow(longer, *probe.growth), Knowledge::predicted,
+       fmt::format("carried on from the first {:.3g} s, where it is {} % and grows as time to the power {}",
+                   probe.window, fixedText(100 * *within, 4), fixedText(*probe.growth, 1))};
 }
 
 Estimate secondsOf(const AccuracyProbe &probe, double step, bool withHalf)
@@ -120,17 +94,14 @@ Status runLadder(const Subject &subject, const ProbeRequest &request, AccuracyPr
    // Rounding down makes the step longer by at most one part in the samples: still below the limit.
    const std::int64_t samples = std::max<std::int64_t>(1, fits / perSample);
    std::array<TrialRun, 3> runs;
-   std::vector<double> stepSeconds;
    for (std::size_t k = 0; k < runs.size(); ++k) {
       auto run =
           runTrial(subject, request.values, probe.quantity, probe.window, samples, perSample << k, job);
       if (!run)
          return run.error();
-      stepSeconds.push_back(run->stepSeconds);
       runs[k] = *std::move(run);
    }
    probe.step = runs[0].step;
-   probe.stepSeconds = median(stepSeconds);
    probe.nsPerCellStep =
        1e9 * probe.stepSeconds / static_cast<double>(std::max<std::int64_t>(1, runs[0].cells));
    probe.convergence = judgeRuns(probe.quantity, runs, probe.window);
@@ -191,6 +162,29 @@ Result<Quantity> busiestQuantity(const Subject &subject, const Values &values, d
    return quantity;
 }
 
+PresetEstimate estimateAt(const AccuracyProbe &probe, std::string name, double step)
+{
+   const double base = probe.limit.stableStep > 0 ? probe.limit.stableStep : probe.errorUntil / 20;
+   PresetEstimate estimate{std::move(name), step / base, step, errorOf(probe, step, false),
+                           secondsOf(probe, step, false)};
+   if (probe.limit.stableStep > 0 && step > probe.limit.stableStep * (1 + 1e-9))
+      estimate.error = {0, Knowledge::unknown, "beyond the stable limit a run diverges"};
+   return estimate;
+}
+
+std::optional<double> stepFor(const AccuracyProbe &probe, double error)
+{
+   const auto within = probe.convergence.relativeErrorAt(1);
+   if (!within)
+      return std::nullopt;
+   const Estimate whole = errorOf(probe, probe.step, true);
+   const double coarsest = whole.how == Knowledge::unknown ? *within : whole.value;
+   if (coarsest <= error || probe.convergence.settled)
+      return coarsest <= error ? std::optional(probe.step) : std::nullopt;
+   const double fraction = std::pow(error / coarsest, 1 / *probe.convergence.order);
+   return fraction >= kFinest ? std::optional(fraction * probe.step) : std::nullopt;
+}
+
 Result<AccuracyProbe> probeAccuracy(const Subject &subject, const ProbeRequest &request, const Job &job)
 {
    const auto start = Clock::now();
@@ -209,10 +203,11 @@ Result<AccuracyProbe> probeAccuracy(const Subject &subject, const ProbeRequest &
    const double base = probe.limit.stableStep > 0 ? probe.limit.stableStep : probe.errorUntil / 20;
    probe.step = kCoarsest * base;
    const auto stepSeconds =
-       timeStep(subject, request.values, probe.step, probe.errorUntil, kPilotShare * request.budget, job);
+       timeStep(subject, request.values, probe.step, probe.until, kPilotShare * request.budget, job);
    if (!stepSeconds)
       return stepSeconds.error();
    const bool search = !request.quantity;
+   probe.stepSeconds = *stepSeconds;
    const double runs = 1 + 2 + 4 + (search ? 1 : 0); // in units of the coarsest one
    const double steps = std::max<double>(kFewestSteps, kRunsShare * request.budget / runs / *stepSeconds);
    probe.window = std::min(probe.errorUntil, steps * probe.step);

@@ -63,7 +63,7 @@ struct AccuracyProbe
    Convergence convergence;
    /// How the error grows with the length of a run, error ~ time^growth; nothing when it could not be seen.
    std::optional<double> growth;
-   double stepSeconds = 0; // wall time of one step
+   double stepSeconds = 0; // wall time of one step, in stretches of many
    double nsPerCellStep = 0;
    double probeSeconds = 0; // wall time the probe itself took
    std::vector<PresetEstimate> presets;
@@ -81,6 +81,14 @@ inline constexpr std::array<Preset, 4> kPresets{
 
 /// Runs the scene briefly. Errors: as a run's own; the quantity's cell missing; cancelled (within one step).
 Result<AccuracyProbe> probeAccuracy(const Subject &subject, const ProbeRequest &request, const Job &job);
+
+/// What the probe tells of another step (s) than those of the presets.
+PresetEstimate estimateAt(const AccuracyProbe &probe, std::string name, double step);
+
+/// The longest step (s), up to the coarsest one tried, at which the error is at most this: of the asked run,
+/// or, where that is unknown, of the part that was tried. Nothing when the runs do not converge, or not that
+/// far within reason.
+std::optional<double> stepFor(const AccuracyProbe &probe, double error);
 
 /// The cell and direction (x, y or z) that move most within `until` at the solver's own step.
 Result<Quantity> busiestQuantity(const Subject &subject, const Values &values, double until, const Job &job);

@@ -61,7 +61,7 @@ std::string Convergence::doubt() const
                       fixedText(100 * coarseChange / scale, 3), fixedText(100 * fineChange / scale, 3));
 }
 
-double largestDifference(const Curve &a, const Curve &b, double until)
+double largestDifference(const History &a, const History &b, double until)
 {
    double most = 0;
    for (std::size_t k = 0; k < std::min(a.value.size(), b.value.size()); ++k)
@@ -70,7 +70,7 @@ double largestDifference(const Curve &a, const Curve &b, double until)
    return most;
 }
 
-double largestValue(const Curve &curve, double until)
+double largestValue(const History &curve, double until)
 {
    double most = 0;
    for (std::size_t k = 0; k < curve.value.size(); ++k)
@@ -79,7 +79,7 @@ double largestValue(const Curve &curve, double until)
    return most;
 }
 
-Convergence convergenceOf(const Curve &coarse, const Curve &middle, const Curve &fine, double until)
+Convergence convergenceOf(const History &coarse, const History &middle, const History &fine, double until)
 {
    return judge(largestDifference(coarse, middle, until), largestDifference(middle, fine, until),
                 largestValue(fine, until));
@@ -88,6 +88,28 @@ Convergence convergenceOf(const Curve &coarse, const Curve &middle, const Curve 
 Convergence convergenceOf(double coarse, double middle, double fine)
 {
    return judge(std::abs(coarse - middle), std::abs(middle - fine), std::abs(fine));
+}
+
+std::optional<ResolutionLimit> resolutionLimit(const std::array<double, 3> &times,
+                                               const std::array<double, 3> &values)
+{
+   const double first = values[0] - values[1], second = values[1] - values[2];
+   if (!(first * second > 0) || !(times[0] < times[1] && times[1] < times[2]))
+      return std::nullopt;
+   // The ratio of the two changes falls with the order, so that it is found by halving an interval.
+   const auto power = [&](std::size_t k, double order) { return std::pow(times[k], -order); };
+   const auto excess = [&](double order) {
+      return (power(1, order) - power(2, order)) / (power(0, order) - power(1, order)) - second / first;
+   };
+   double low = kLeastOrder, high = kMostOrder;
+   if (!(excess(low) > 0) || !(excess(high) < 0))
+      return std::nullopt;
+   for (int k = 0; k < 60; ++k) {
+      const double middle = (low + high) / 2;
+      (excess(middle) > 0 ? low : high) = middle;
+   }
+   const double c = second / (power(1, low) - power(2, low));
+   return ResolutionLimit{values[2] - c * power(2, low), low};
 }
 
 } // namespace diatom

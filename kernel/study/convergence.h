@@ -4,6 +4,7 @@
 
 #include "study/quantity.h"
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -33,12 +34,21 @@ struct Convergence
 };
 
 /// Largest |a - b| over the samples both have, up to `until`.
-double largestDifference(const Curve &a, const Curve &b, double until);
-double largestValue(const Curve &curve, double until);
+double largestDifference(const History &a, const History &b, double until);
+double largestValue(const History &curve, double until);
 
 /// The three curves have the same sample times; only samples up to `until` count.
-Convergence convergenceOf(const Curve &coarse, const Curve &middle, const Curve &fine, double until);
+Convergence convergenceOf(const History &coarse, const History &middle, const History &fine, double until);
 /// The same for single values.
 Convergence convergenceOf(double coarse, double middle, double fine);
+
+/// What values at cells of edge 1 / times[k] of the first tend to (three resolutions of any ratio), by
+/// f = limit + c / times^order. Nothing unless the three approach one limit in order.
+struct ResolutionLimit
+{
+   double limit = 0, order = 0;
+};
+std::optional<ResolutionLimit> resolutionLimit(const std::array<double, 3> &times,
+                                               const std::array<double, 3> &values);
 
 } // namespace diatom

@@ -70,13 +70,13 @@ std::string plain(const std::string &text)
    return out;
 }
 
-std::string axisText(const Axis &axis)
+std::string axisText(const ChartAxis &axis)
 {
    return plain(axis.unit.empty() ? axis.title : axis.title + " (" + axis.unit + ")");
 }
 
 /// A coordinate as PLplot wants it; not finite when the axis cannot show it.
-double placed(const Axis &axis, double value)
+double placed(const ChartAxis &axis, double value)
 {
    if (!axis.logarithmic)
       return value;

@@ -11,7 +11,7 @@
 
 namespace diatom {
 
-struct Axis
+struct ChartAxis
 {
    std::string title;
    std::string unit; // "" = none
@@ -34,7 +34,7 @@ struct Series
 struct Chart
 {
    std::string title;
-   Axis x, y;
+   ChartAxis x, y;
    std::vector<Series> series;
    /// What nothing beats: the points of least y for their x, drawn as one pale broad line.
    std::vector<ChartPoint> front;

@@ -94,7 +94,7 @@ Result<Quantity> parseQuantity(std::string_view text)
    return quantity;
 }
 
-std::optional<double> curveFrequency(const Curve &curve)
+std::optional<double> historyFrequency(const History &curve)
 {
    if (curve.value.size() < 3)
       return std::nullopt;

@@ -36,13 +36,13 @@ struct Quantity
 Result<Quantity> parseQuantity(std::string_view text);
 
 /// A quantity over one run: times ascend (s).
-struct Curve
+struct History
 {
    std::vector<double> time, value;
 };
 
 /// Frequency of a curve, Hz: upward crossings of the middle of its swing, each placed by a line between two
 /// samples. Nothing when it crosses fewer than twice.
-std::optional<double> curveFrequency(const Curve &curve);
+std::optional<double> historyFrequency(const History &curve);
 
 } // namespace diatom

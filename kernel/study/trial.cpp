@@ -29,11 +29,8 @@ Result<std::unique_ptr<Simulation>> startTrial(const Subject &subject, const Val
    return Simulation::start(subject.catalogue, *std::move(scene), setup, values, job);
 }
 
-namespace {
-
-/// Numbers of the cells that make up the quantity's cell.
-Result<std::vector<std::int64_t>> cellsOf(const Subject &subject, const Quantity &quantity,
-                                          const Scene &scene)
+Result<std::vector<std::int64_t>> quantityCells(const Subject &subject, const Quantity &quantity,
+                                                const Scene &scene)
 {
    std::vector<std::int64_t> cells;
    const int times = subject.resolution;
@@ -46,6 +43,8 @@ Result<std::vector<std::int64_t>> cellsOf(const Subject &subject, const Quantity
                    fmt::format("the quantity {} is of a cell that is not there", quantity.text())};
    return cells;
 }
+
+namespace {
 
 Result<double> meanOf(const Simulation &simulation, const std::vector<std::int64_t> &cells,
                       const std::string &channel, const Job &job)
@@ -68,15 +67,17 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
    using Clock = std::chrono::steady_clock;
    const double stretch = until / static_cast<double>(samples);
    const double step = stretch / static_cast<double>(perSample);
+   const auto start = Clock::now();
    // A hair above, so that rounding of the sample times cannot add a step to a stretch.
    auto started = startTrial(subject, values, step * (1 + 1e-9), job);
    if (!started)
       return started.error();
    Simulation &simulation = **started;
-   const auto cells = cellsOf(subject, quantity, simulation.scene());
+   const auto cells = quantityCells(subject, quantity, simulation.scene());
    if (!cells)
       return cells.error();
    TrialRun run;
+   run.seconds = std::chrono::duration<double>(Clock::now() - start).count();
    run.cells = simulation.scene().cells();
    run.step = step;
    std::vector<double> stretches;
@@ -100,6 +101,44 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
    run.steps = simulation.steps();
    run.stepSeconds = median(stretches) / static_cast<double>(perSample);
    return run;
+}
+
+Result<double> timeStep(const Subject &subject, const Values &values, double step, double until,
+                        double seconds, const Job &job)
+{
+   using Clock = std::chrono::steady_clock;
+   constexpr double kStretch = 2e-3; // s: the clock, the call and a look at the energies are nothing to it
+   constexpr std::size_t kFewest = 3, kMost = 200;
+   const auto secondsSince = [](Clock::time_point start) {
+      return std::chrono::duration<double>(Clock::now() - start).count();
+   };
+   auto started = startTrial(subject, values, step, job);
+   if (!started)
+      return started.error();
+   Simulation &simulation = **started;
+   simulation.setGoal(until);
+   std::vector<double> times;
+   double length = 4; // steps
+   const auto start = Clock::now();
+   while (times.size() < kFewest || (secondsSince(start) < seconds && times.size() < kMost)) {
+      const std::int64_t before = simulation.steps();
+      const auto begun = Clock::now();
+      if (const Status advanced = simulation.advance(std::min(simulation.time() + length * step, until), job);
+          !advanced)
+         return advanced.error();
+      const std::int64_t done = simulation.steps() - before;
+      if (done == 0)
+         break;
+      const double took = secondsSince(begun);
+      const bool brief = took < kStretch && simulation.time() < until;
+      // The first stretches warm up; a longer one of the same kind replaces them.
+      if (brief && secondsSince(start) < std::max(seconds, kStretch)) {
+         length *= 2;
+         times.clear();
+      }
+      times.push_back(took / static_cast<double>(done));
+   }
+   return median(times);
 }
 
 } // namespace diatom

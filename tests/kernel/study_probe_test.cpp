@@ -42,9 +42,9 @@ Quantity quantity(const char *text)
 }
 
 /// A curve of a run at step h whose error is c h^order.
-Curve curveAt(double h, double order)
+History curveAt(double h, double order)
 {
-   Curve curve;
+   History curve;
    for (int k = 0; k <= 32; ++k) {
       const double t = k / 32.0;
       curve.time.push_back(t);
@@ -99,18 +99,18 @@ void StudyProbeTest::malformedQuantitiesAreRefusedWithTheForm()
 
 void StudyProbeTest::theFrequencyOfASineIsItsFrequency()
 {
-   Curve curve;
+   History curve;
    for (int k = 0; k <= 400; ++k) {
       curve.time.push_back(k / 400.0);
       curve.value.push_back(2 + std::sin(2 * M_PI * 7.3 * curve.time.back() + 0.4));
    }
-   const auto frequency = curveFrequency(curve);
+   const auto frequency = historyFrequency(curve);
    QVERIFY(frequency);
    // Crossings are placed by a line between samples 1/55 of a period apart, off by some 1e-4 of a period of
    // six.
    QVERIFY(std::abs(*frequency - 7.3) < 7.3 * 1e-4);
    curve.value.assign(curve.value.size(), 1.0);
-   QVERIFY(!curveFrequency(curve));
+   QVERIFY(!historyFrequency(curve));
 }
 
 void StudyProbeTest::richardsonFindsOrderAndErrorOfAKnownLaw()
