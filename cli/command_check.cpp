@@ -62,10 +62,12 @@ void check(const std::string &file, Context &context)
    std::vector<Problem> problems = findSetupProblems(*input->hierarchy, setup);
    append(problems, findNetworks(*input->hierarchy, setup, context.job()).problems);
    if (input->hierarchy->cells() > 0) {
-      if (const auto bodies = findBodies(*input->hierarchy, context.job()))
-         append(problems, findFloatingBodies(*bodies, setup));
-      else
+      if (const auto bodies = findBodies(*input->hierarchy, context.job())) {
+         append(problems, findFloatingBodies(*input->hierarchy, *bodies, setup));
+         append(problems, findUnheldBodies(*input->hierarchy, *bodies, setup, context.job()));
+      } else {
          appendNotExamined(problems, "loose bodies were", bodies.error());
+      }
       if (!context.job().cancelled())
          checkParts(*input, context, problems);
    }

@@ -1,7 +1,7 @@
 // diatom simulate: motion in time, with a record, probes and an account of the energy.
 #include "cli/accuracy_option.h"
 #include "cli/commands.h"
-#include "cli/recorder.h"
+#include "cli/run_options.h"
 #include "cli/scene_json.h"
 #include "core/text.h"
 #include "scene/simulation.h"
@@ -21,32 +21,24 @@ constexpr double kMostRows = 1e7;
 
 struct Options
 {
-   std::string file, integrator, beam, gradient, step, effects, record, state, accuracy;
+   RunOptions run;
+   std::string integrator, step, accuracy;
    double until = 0, every = 0, probeBudget = 30;
-   std::optional<double> drag;
-   std::vector<std::string> probes, settings;
+   std::optional<double> drag, rho;
    bool force = false;
 };
 
-/// The design's set-up as the options change it.
-Status applyOptions(const Options &options, Design &design)
+/// What motion alone can be told.
+Status applyOptions(const Options &options, Setup &setup)
 {
-   for (const std::string &setting : options.settings)
-      if (const Status set = applySetting(setting, design); !set)
-         return set;
-   Setup &setup = design.setup;
-   for (const auto &[name, value] :
-        {std::pair{"integrator", &options.integrator}, std::pair{"beam", &options.beam},
-         std::pair{"gradient", &options.gradient}})
-      if (!value->empty())
-         setup.solverValues[name] = *value;
+   if (!options.integrator.empty())
+      setup.solverValues["integrator"] = options.integrator;
+   if (options.rho)
+      setup.solverValues["rho"] = *options.rho;
    if (options.force)
       setup.solverValues["force_step"] = 1.0;
    if (options.drag)
       setup.drag = *options.drag;
-   if (!options.effects.empty())
-      if (const Status applied = applyEffects(options.effects, setup); !applied)
-         return applied;
    if (options.step == "auto") {
       setup.step = 0;
    } else if (!options.step.empty()) {
@@ -70,20 +62,20 @@ Status runTo(Simulation &simulation, const Options &options, Recorder *recorder,
       return Error{ErrorCode::usage,
                    "--every is too short: the record would have more than ten million rows"};
    const auto rows = static_cast<std::int64_t>(std::ceil(options.until / every * (1 - 1e-12)));
-   if (const Status first = recorder->row(simulation, job); !first)
+   if (const Status first = recorder->row(simulation.run(), job); !first)
       return first;
    for (std::int64_t k = 1; k <= rows; ++k) {
       const double until = k == rows ? options.until : every * static_cast<double>(k);
       if (const Status advanced = simulation.advance(until, job); !advanced)
          return advanced;
-      if (const Status written = recorder->row(simulation, job); !written)
+      if (const Status written = recorder->row(simulation.run(), job); !written)
          return written;
    }
    return {};
 }
 
 Result<nlohmann::ordered_json> summary(const Simulation &simulation, const std::vector<Probe> &probes,
-                                       const char *status, const Job &job)
+                                       const char *status, bool forPrograms, const Job &job)
 {
    const auto energy = simulation.energy(job);
    if (!energy)
@@ -103,21 +95,17 @@ Result<nlohmann::ordered_json> summary(const Simulation &simulation, const std::
        {"stable_step_s", simulation.stableStep()},
        {"wall_s", simulation.wallSeconds()},
        {"ns_per_cell_step", cellSteps > 0 ? 1e9 * simulation.wallSeconds() / cellSteps : 0.0}};
-   object["effects"] = toJson(simulation.scene().effects());
+   object["effects"] = effectsReport(simulation.scene().effects(), forPrograms);
    object["energy"] = {
        {"kinetic", energy->kinetic}, {"elastic", energy->elastic},       {"gravity", energy->gravity},
        {"contact", energy->contact}, {"dissipated", energy->dissipated}, {"work", energy->work},
        {"drift", energy->drift}};
    const auto vector = [](const Vec3 &v) { return nlohmann::ordered_json{v.x(), v.y(), v.z()}; };
    object["momentum"] = {{"linear", vector(momentum->linear)}, {"angular", vector(momentum->angular)}};
-   auto values = nlohmann::ordered_json::object();
-   for (const Probe &probe : probes) {
-      const auto value = simulation.probe(probe.cell, probe.channel, job);
-      if (!value)
-         return value.error();
-      values[probe.name] = *value;
-   }
-   object["probes"] = std::move(values);
+   auto values = probeValues(simulation.run(), probes, job);
+   if (!values)
+      return values.error();
+   object["probes"] = *std::move(values);
    object["problems"] = toJson(simulation.scene().networks().problems);
    return object;
 }
@@ -128,16 +116,8 @@ Status finishFiles(const Simulation &simulation, const Model &model, const Optio
    if (recorder)
       if (const Status kept = recorder->finish(ran ? "" : ran.error().message); !kept)
          return kept;
-   return options.state.empty() || !ran ? Status() : writeState(simulation, model, options.state, job);
-}
-
-/// Effects for people: one line each.
-nlohmann::ordered_json effectLines(const std::vector<Effect> &effects)
-{
-   auto lines = nlohmann::ordered_json::object();
-   for (const Effect &effect : effects)
-      lines[effect.name] = fmt::format("{}: {}", effect.on ? "on" : "off", effect.why);
-   return lines;
+   return options.run.state.empty() || !ran ? Status()
+                                            : writeState(simulation.run(), model, options.run.state, job);
 }
 
 struct Started
@@ -153,12 +133,10 @@ Result<Started> start(const Context::Input &input, const Options &options, Conte
    if (!scene)
       return scene.error();
    Started started;
-   for (const std::string &text : options.probes) {
-      auto probe = parseProbe(text, **scene);
-      if (!probe)
-         return probe.error();
-      started.probes.push_back(*std::move(probe));
-   }
+   auto probes = parseProbes(options.run.probes, **scene);
+   if (!probes)
+      return probes.error();
+   started.probes = *std::move(probes);
    auto simulation = Simulation::start(context.catalogue(), *std::move(scene), setup, {}, context.job());
    if (!simulation)
       return simulation.error();
@@ -177,10 +155,12 @@ Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::In
    if (!error)
       return error.error();
    AccuracyAsked asked{*error, options.until, "", options.probeBudget, {}};
-   if (!options.probes.empty())
-      asked.quantity = options.probes.front();
+   if (!options.run.probes.empty())
+      asked.quantity = options.run.probes.front();
    if (!options.integrator.empty())
       asked.fixed["integrator"] = options.integrator;
+   if (!options.run.precision.empty())
+      asked.fixed["precision"] = options.run.precision;
    auto choice = applyAccuracy(asked, input, input.opened.design.setup, context);
    if (!choice)
       return choice.error();
@@ -189,14 +169,8 @@ Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::In
 
 void simulate(const Options &options, Context &context)
 {
-   auto opened = openDesign(options.file, context.job());
-   if (!opened)
-      return context.fail(opened.error());
-   for (const std::string &text : opened->notes)
-      context.note(text);
-   if (const Status applied = applyOptions(options, opened->design); !applied)
-      return context.fail(applied.error());
-   const auto input = context.prepare(*std::move(opened));
+   const auto input =
+       openToRun(options.run, context, [&](Design &design) { return applyOptions(options, design.setup); });
    if (!input)
       return;
    const auto choice = choose(options, *input, context);
@@ -210,8 +184,8 @@ void simulate(const Options &options, Context &context)
       context.note("warning: " + problem.text);
 
    std::optional<Recorder> recorder;
-   if (!options.record.empty())
-      recorder.emplace(options.record, started->probes);
+   if (!options.run.record.empty())
+      recorder.emplace(options.run.record, started->probes, simulation.run());
    const Status ran = runTo(simulation, options, recorder ? &*recorder : nullptr, context.job());
    const Job calm; // what is read after a cancel must not be cancelled itself
    const char *status = ran                                        ? "done"
@@ -224,13 +198,11 @@ void simulate(const Options &options, Context &context)
       return context.fail(kept.error());
    if (!ran && std::string_view(status) == "failed")
       return context.fail(ran.error());
-   auto object = summary(simulation, started->probes, status, calm);
+   auto object = summary(simulation, started->probes, status, context.json, calm);
    if (!object)
       return context.fail(object.error());
    if (*choice)
       (*object)["accuracy"] = choiceJson(**choice, simulation.wallSeconds());
-   if (!context.json)
-      (*object)["effects"] = effectLines(simulation.scene().effects());
    context.print(*object);
    if (!ran)
       context.fail(ran.error());
@@ -243,15 +215,18 @@ void addSimulate(CLI::App &app, Context &context)
    const auto options = std::make_shared<Options>();
    CLI::App *command =
        app.add_subcommand("simulate", "Simulate motion in time; prints energies, effects and probes");
-   command->add_option("FILE", options->file, "A design of any readable format, - for standard input")
-       ->required();
+   addRunOptions(*command, options->run);
    command->add_option("--until", options->until, "Time to simulate, s")
        ->required()
        ->check(CLI::PositiveNumber);
    command->add_option("--integrator", options->integrator,
-                       "The solver's integrator, e.g. semi_implicit, verlet, rk4");
-   command->add_option("--beam", options->beam, "Beam theory of a bond: timoshenko, thesis, euler");
-   command->add_option("--gradient", options->gradient, "Torques: exact or simple");
+                       "The solver's integrator, e.g. semi_implicit, verlet, rk4, implicit");
+   command
+       ->add_option(
+           "--rho", options->rho,
+           "Implicit integrator: what a step leaves of the fastest vibrations, 0 to 1; 1 = no numerical "
+           "damping")
+       ->check(CLI::Range(0.0, 1.0));
    command->add_option("--step", options->step,
                        "Time step in s, or auto for the stable one (default: the design's)");
    command->add_option(
@@ -263,20 +238,9 @@ void addSimulate(CLI::App &app, Context &context)
                     "Wall time, s, that --accuracy may spend on each setting it considers")
        ->check(CLI::PositiveNumber);
    command->add_flag("--force-step", options->force, "Accept a step beyond the stable limit");
-   command->add_option("--effects", options->effects, "auto, or +NAME,-NAME to switch effects on and off");
    command->add_option("--drag", options->drag, "Slow all motion, 1/s: settles a design to rest")
        ->check(CLI::NonNegativeNumber);
-   command
-       ->add_option("--probe", options->probes,
-                    "Watch X,Y,Z:CHANNEL (x y z vx vy vz rx ry rz strain); repeats")
-       ->allow_extra_args(false);
-   command->add_option("--record", options->record, "Write probes and energies over time as CSV");
    command->add_option("--every", options->every, "Interval of the record, s")->check(CLI::PositiveNumber);
-   command->add_option("--state", options->state, "Write the final state of every cell: .csv, or JSON lines");
-   command
-       ->add_option("--set", options->settings,
-                    "Change PATH=VALUE for this run, e.g. gravity.z=-9.81; repeats")
-       ->allow_extra_args(false);
    command->footer("Examples:\n  diatom simulate beam.diatom --until 0.5 --record out.csv --probe 0,13,0:z\n"
                    "  diatom simulate beam.diatom --until 0.5 --probe 0,13,0:z --accuracy 1%\n"
                    "  diatom simulate gripper.json --until 0.2 --step auto --effects=-gravity --json");

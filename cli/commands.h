@@ -15,6 +15,8 @@ void addConvert(CLI::App &app, Context &context);
 void addExport(CLI::App &app, Context &context);
 void addPlan(CLI::App &app, Context &context);
 void addSimulate(CLI::App &app, Context &context);
+void addSolve(CLI::App &app, Context &context);
+void addModes(CLI::App &app, Context &context);
 void addCircuit(CLI::App &app, Context &context);
 void addEffects(CLI::App &app, Context &context);
 void addCheck(CLI::App &app, Context &context);

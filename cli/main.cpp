@@ -8,9 +8,9 @@ using namespace diatom::cli;
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    addInfo,     addCheck,    addConvert,  addDo,      addExport,   addPlan,
-    addRender,   addSimulate, addEffects,  addCircuit, addPipeline, addPlugins,
-    addLattices, addParts,    addMachines, addSolvers, addBench,    addStudy,
+    addInfo,     addCheck, addConvert,  addDo,      addExport,  addPlan,     addRender,
+    addSimulate, addSolve, addModes,    addEffects, addCircuit, addPipeline, addPlugins,
+    addLattices, addParts, addMachines, addSolvers, addBench,   addStudy,
 };
 
 } // namespace

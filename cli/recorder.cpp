@@ -25,15 +25,21 @@ struct StateColumns
    std::vector<const char *> names;
 };
 
-const std::array<StateColumns, 5> &stateColumns()
+/// Those that the run has.
+std::vector<StateColumns> stateColumns(const SolverRun &run)
 {
-   static const std::array<StateColumns, 5> kColumns{{{"position", "m", {"x", "y", "z"}},
-                                                      {"rotation", "", {"qw", "qx", "qy", "qz"}},
-                                                      {"velocity", "m/s", {"vx", "vy", "vz"}},
-                                                      {"angular_velocity", "rad/s", {"wx", "wy", "wz"}},
-                                                      {"strain", "", {"strain"}}}};
-   return kColumns;
+   std::vector<StateColumns> columns{{"position", "m", {"x", "y", "z"}},
+                                     {"rotation", "", {"qw", "qx", "qy", "qz"}},
+                                     {"velocity", "m/s", {"vx", "vy", "vz"}},
+                                     {"angular_velocity", "rad/s", {"wx", "wy", "wz"}},
+                                     {"strain", "", {"strain"}},
+                                     {"reaction", "N or N m", {"fx", "fy", "fz", "mx", "my", "mz"}}};
+   std::erase_if(columns, [&](const StateColumns &group) { return !run.hasOutput(group.output); });
+   return columns;
 }
+
+constexpr std::array<const char *, 6> kEnergies{"kinetic", "elastic",    "gravity",
+                                                "contact", "dissipated", "work"};
 
 std::string csvRow(const std::vector<std::string> &fields)
 {
@@ -55,7 +61,7 @@ Result<Probe> parseProbe(const std::string &text, const Scene &scene)
    if (probe.cell < 0)
       return Error{ErrorCode::usage, fmt::format("--probe \"{}\": there is no cell at that index", text)};
    std::string known;
-   for (const auto &[channel, unit] : Simulation::probeChannels()) {
+   for (const auto &[channel, unit] : SolverRun::probeChannels()) {
       if (channel == probe.channel) {
          probe.unit = unit;
          return probe;
@@ -65,31 +71,40 @@ Result<Probe> parseProbe(const std::string &text, const Scene &scene)
    return Error{ErrorCode::usage, fmt::format("--probe \"{}\": the channels are{}", text, known)};
 }
 
-Recorder::Recorder(const std::filesystem::path &file, std::vector<Probe> probes)
-    : m_file(file), m_probes(std::move(probes))
+Recorder::Recorder(const std::filesystem::path &file, std::vector<Probe> probes, const SolverRun &run,
+                   const std::vector<std::string> &more)
+    : m_file(file), m_probes(std::move(probes)), m_energies(run.hasOutput("energy"))
 {
    std::vector<std::string> names{"time (s)"};
    for (const Probe &probe : m_probes)
       names.push_back(fmt::format("\"{}\"", headed(probe.name, probe.unit)));
-   for (const char *energy : {"kinetic", "elastic", "gravity", "contact", "dissipated", "work"})
-      names.push_back(headed(energy, "J"));
+   if (m_energies)
+      for (const char *energy : kEnergies)
+         names.push_back(headed(energy, "J"));
+   names.insert(names.end(), more.begin(), more.end());
    m_file.write(csvRow(names));
 }
 
-Status Recorder::row(const Simulation &simulation, const Job &job)
+Status Recorder::row(const SolverRun &run, const Job &job, const std::vector<double> &more)
 {
-   std::vector<std::string> fields{numberText(simulation.time())};
+   std::vector<std::string> fields{numberText(run.time())};
    for (const Probe &probe : m_probes) {
-      const auto value = simulation.probe(probe.cell, probe.channel, job);
+      const auto value = run.probe(probe.cell, probe.channel, job);
       if (!value)
          return value.error();
       fields.push_back(numberText(*value));
    }
-   const auto e = simulation.energy(job);
-   if (!e)
-      return e.error();
-   for (const double value : {e->kinetic, e->elastic, e->gravity, e->contact, e->dissipated, e->work})
-      fields.push_back(numberText(value));
+   if (m_energies) {
+      const auto energies = run.read("energy", 0, 1, job);
+      if (!energies)
+         return energies.error();
+      if (energies->size() < kEnergies.size())
+         return Error{ErrorCode::internal, fmt::format("{}: its output 'energy' must have {} numbers",
+                                                       run.solver(), kEnergies.size())};
+      for (std::size_t k = 0; k < kEnergies.size(); ++k)
+         fields.push_back(numberText((*energies)[k]));
+   }
+   std::transform(more.begin(), more.end(), std::back_inserter(fields), numberText);
    m_file.write(csvRow(fields));
    return {};
 }
@@ -101,13 +116,13 @@ Status Recorder::finish(std::string_view mark)
    return m_file.commit();
 }
 
-Status writeState(const Simulation &simulation, const Model &model, const std::filesystem::path &file,
-                  const Job &job)
+Status writeState(const SolverRun &run, const Model &model, const std::filesystem::path &file, const Job &job)
 {
+   const auto groups = stateColumns(run);
    std::vector<std::vector<double>> data;
    std::vector<std::string> names{"i", "j", "k", "material"};
-   for (const StateColumns &columns : stateColumns()) {
-      auto values = simulation.output(columns.output, job);
+   for (const StateColumns &columns : groups) {
+      auto values = run.output(columns.output, job);
       if (!values)
          return values.error();
       data.push_back(*std::move(values));
@@ -118,22 +133,22 @@ Status writeState(const Simulation &simulation, const Model &model, const std::f
    AtomicFile out(file);
    if (csv)
       out.write(csvRow(names));
-   const diatom_scene &view = simulation.scene().view();
+   const diatom_scene &view = run.scene().view();
    for (std::int64_t cell = 0; cell < view.cells; ++cell) {
-      const Index index = simulation.scene().indices()[static_cast<std::size_t>(cell)];
+      const Index index = run.scene().indices()[static_cast<std::size_t>(cell)];
       const std::string &material = (*model.materials)[static_cast<std::size_t>(view.cell_material[cell])].id;
       std::vector<std::string> fields{fmt::to_string(index.x), fmt::to_string(index.y),
                                       fmt::to_string(index.z), material};
       nlohmann::ordered_json object{{"cell", toJson(index)}, {"material", material}};
       for (std::size_t group = 0; group < data.size(); ++group) {
-         const auto width = static_cast<std::int64_t>(stateColumns()[group].names.size());
+         const auto width = static_cast<std::int64_t>(groups[group].names.size());
          const auto begin = data[group].begin() + cell * width;
          if (csv)
             std::transform(begin, begin + width, std::back_inserter(fields), numberText);
          else if (width == 1)
-            object[stateColumns()[group].output] = *begin;
+            object[groups[group].output] = *begin;
          else
-            object[stateColumns()[group].output] = std::vector<double>(begin, begin + width);
+            object[groups[group].output] = std::vector<double>(begin, begin + width);
       }
       out.write(csv ? csvRow(fields) : object.dump() + "\n");
    }

@@ -1,11 +1,11 @@
-// What a simulation leaves behind: a table of probes and energies over time, and the final state of every
+// What a run leaves behind: a table of probes and energies over time, and the final state of every
 // cell.
 #pragma once
 
 #include "core/file.h"
 #include "core/job.h"
 #include "core/result.h"
-#include "scene/simulation.h"
+#include "scene/solver_run.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -30,19 +30,23 @@ Result<Probe> parseProbe(const std::string &text, const Scene &scene);
 class Recorder
 {
 public:
-   Recorder(const std::filesystem::path &file, std::vector<Probe> probes);
-   Status row(const Simulation &simulation, const Job &job);
+   /// Energies are left out where the solver does not tell them; `more` are headings of further columns.
+   Recorder(const std::filesystem::path &file, std::vector<Probe> probes, const SolverRun &run,
+            const std::vector<std::string> &more = {});
+   /// A row of the run's state, with the values of the further columns.
+   Status row(const SolverRun &run, const Job &job, const std::vector<double> &more = {});
    /// `mark` is written as a last comment line when the run did not come to its end.
    Status finish(std::string_view mark);
 
 private:
    AtomicFile m_file;
    std::vector<Probe> m_probes;
+   bool m_energies;
 };
 
-/// Index, material, position, rotation, velocities and strain of every cell: CSV, or JSON lines for other
-/// suffixes.
-Status writeState(const Simulation &simulation, const Model &model, const std::filesystem::path &file,
+/// Index, material, position, rotation, velocities, strain and reactions of every cell, as far as the solver
+/// tells them: CSV, or JSON lines for other suffixes.
+Status writeState(const SolverRun &run, const Model &model, const std::filesystem::path &file,
                   const Job &job);
 
 } // namespace diatom::cli

@@ -31,6 +31,11 @@ struct Actuation
    friend bool operator==(const Actuation &, const Actuation &) = default;
 };
 
+/// How a cell is represented in mechanics: by beam bonds to its neighbours; by bonds whose constants are
+/// chosen for blocks that fill space (shear kappa = 2 G l, bond-model.md); or by solid elements with its
+/// neighbours.
+enum class CellModel : std::uint8_t { bond, block, solid };
+
 enum class ElectricalRole : std::uint8_t { insulator, conductor, source, actuator };
 
 struct Material
@@ -43,6 +48,8 @@ struct Material
    double poissonRatio = 0.3;
    double dampingRatio = 0;            // of each bond, 1 = critical
    std::optional<BondConstants> bonds; // instead of E and nu
+   CellModel cellModel = CellModel::bond;
+   bool poissonCoupling = false; // of bonded cells: asks for the effect "poisson"
    ElectricalRole role = ElectricalRole::insulator;
    /// Faces that conduct, bit 2a for -axis a, bit 2a+1 for +axis a of the cell; all six for plain conductors.
    /// For an actuator or source: its terminals.

@@ -65,6 +65,10 @@ void hashMaterial(Hasher &hasher, const Material &m)
    hasher.add(m.actuation.axis);
    hasher.add(m.actuation.strainPerVolt);
    hasher.add(m.actuation.axisFromWires);
+   if (m.cellModel == CellModel::bond && !m.poissonCoupling)
+      return; // designs of before there was a choice keep their hash
+   hasher.add(m.cellModel);
+   hasher.add(m.poissonCoupling);
 }
 
 void hashLattice(Hasher &hasher, const LatticeSpec &lattice)

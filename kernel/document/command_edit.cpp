@@ -1,5 +1,7 @@
 #include "document/command_edit.h"
 
+#include "scene/where.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,9 +64,9 @@ MaterialIndex Edit::material(std::string_view key)
    return number;
 }
 
-Box Edit::box()
+Box Edit::box(std::string_view key)
 {
-   const auto place = m_arguments.at("box");
+   const auto place = m_arguments.at(key);
    if (!place.json().is_array() || place.json().size() != 2) {
       place.mustBe("two corners [[x, y, z], [x, y, z]]");
       return {};
@@ -104,15 +106,18 @@ std::uint8_t Edit::orientation(Index cell)
 void Edit::pruneSetup()
 {
    auto &setup = m_design.setup;
-   if (!ok() || (setup.supports.empty() && setup.loads.empty() && setup.sources.empty()))
+   if (!ok() || (setup.supports.empty() && setup.drives.empty() && setup.loads.empty() &&
+                 setup.starts.empty() && setup.sources.empty()))
       return;
    const auto after = now();
    if (!after)
       return;
-   const auto gone = [&after](const auto &item) { return after->at(item.cell).empty(); };
+   const auto gone = [&after](const auto &item) { return !anyCell(*after, item.where); };
    std::erase_if(setup.supports, gone);
+   std::erase_if(setup.drives, gone);
    std::erase_if(setup.loads, gone);
-   std::erase_if(setup.sources, gone);
+   std::erase_if(setup.starts, gone);
+   std::erase_if(setup.sources, [&after](const Source &source) { return after->at(source.cell).empty(); });
 }
 
 Result<std::string> Edit::commit(std::string text)

@@ -35,14 +35,14 @@ public:
 
    /// Argument "material": a known one, or a fault.
    MaterialIndex material(std::string_view key);
-   /// Argument "box": [[x, y, z], [x, y, z]], both corners inside.
-   Box box();
+   /// Argument "box" or of another name: [[x, y, z], [x, y, z]], both corners inside.
+   Box box(std::string_view key = "box");
    /// Arguments "cell" or "cells".
    std::vector<Index> cells();
    /// Argument "orientation", a rotation number of the cell's shape.
    std::uint8_t orientation(Index cell);
 
-   /// Removes supports, loads and sources whose cell is gone.
+   /// Removes supports, drives, loads, starts and sources whose cells are gone.
    void pruneSetup();
 
    /// The result of apply(): the first fault, else puts the design in place and returns the undo text.
@@ -63,6 +63,6 @@ std::string countText(const char *what, std::size_t cells); // "place" for one, 
 
 // The commands, by subject.
 extern const std::span<const Command> kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands,
-    kSetupCommands;
+    kBoundaryCommands, kSetupCommands;
 
 } // namespace diatom

@@ -12,8 +12,8 @@ namespace {
 std::vector<Command> allCommands()
 {
    std::vector<Command> all;
-   for (const auto part :
-        {kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands, kSetupCommands})
+   for (const auto part : {kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands,
+                           kBoundaryCommands, kSetupCommands})
       all.insert(all.end(), part.begin(), part.end());
    return all;
 }

@@ -57,6 +57,15 @@ Result<std::string> removeMaterial(CommandContext &context, const nlohmann::json
       id = materials[material - 1U].id;
       materials[material - 1U] = Material(); // keeps its place: cells name materials by number
       edit.model().materials = std::make_shared<const std::vector<Material>>(std::move(materials));
+      const auto on = [&id](const auto &item) {
+         const auto *of = std::get_if<OfMaterial>(&item.where);
+         return of && of->id == id;
+      };
+      Setup &setup = edit.design().setup;
+      std::erase_if(setup.supports, on);
+      std::erase_if(setup.drives, on);
+      std::erase_if(setup.loads, on);
+      std::erase_if(setup.starts, on);
    }
    return edit.commit(fmt::format("remove material {}", id));
 }
@@ -129,6 +138,8 @@ constexpr CommandParameter kSetMaterial[] = {
     {"poisson_ratio", "number", false, "sideways strain over strain"},
     {"damping_ratio", "number", false, "of each bond, 1 = critical"},
     {"role", "text", false, "insulator, conductor, source or actuator"},
+    {"cell_model", "text", false, "bond, block (bonds with constants for filled blocks) or solid"},
+    {"poisson_coupling", "boolean", false, "sideways strain follows axial strain in bonds"},
     {"bonds", "object", false, "the fifteen stiffnesses, instead of Young's modulus and Poisson's ratio"},
     {"ports", "list", false, "faces that conduct: \"-x\", \"+x\", ..."},
     {"actuation", "object", false, "mode, axis, strain_per_V, axis_from_wires"},

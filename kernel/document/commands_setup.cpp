@@ -1,4 +1,4 @@
-// Commands on what is simulated and how the design is made: supports, loads, sources, ground, machine.
+// Commands on what is simulated and how the design is made: sources, gravity, ground, solver, machine.
 #include "document/command_edit.h"
 
 #include <fmt/format.h>
@@ -9,91 +9,15 @@ namespace diatom {
 
 namespace {
 
-constexpr std::size_t kMostSupports = 1'000'000;
-
-/// Arguments "cell", "cells" or "box" (every cell in it), all of which must exist.
-std::vector<Index> existingCells(Edit &edit)
-{
-   std::vector<Index> cells;
-   if (!edit.hierarchy())
-      return cells;
-   if (!edit.arguments().has("box")) {
-      cells = edit.cells();
-      for (const Index cell : cells)
-         if (edit.ok() && edit.hierarchy()->at(cell).empty())
-            edit.fail(ErrorCode::invalid, fmt::format("there is no cell at {}", cellText(cell)));
-      return cells;
-   }
-   const Box box = edit.box();
-   if (!edit.ok())
-      return cells;
-   edit.hierarchy()->visit(box, [&](Index i, Cell) {
-      cells.push_back(i);
-      return cells.size() <= kMostSupports;
-   });
-   if (cells.empty())
-      edit.fail(ErrorCode::invalid, "there are no cells in the box");
-   if (cells.size() > kMostSupports)
-      edit.fail(ErrorCode::invalid,
-                fmt::format("there are more than {} cells in the box; take a smaller one", kMostSupports));
-   return cells;
-}
-
-template<typename Item>
-void removeAt(std::vector<Item> &items, Index cell)
-{
-   std::erase_if(items, [cell](const Item &item) { return item.cell == cell; });
-}
-
-Result<std::string> support(CommandContext &context, const nlohmann::json &arguments)
-{
-   Edit edit(context, "support", arguments);
-   const auto cells = existingCells(edit);
-   const auto fixed =
-       edit.arguments().has("fixed") ? readFixed(edit.arguments().at("fixed")) : std::uint8_t{0x3f};
-   auto &supports = edit.design().setup.supports;
-   std::set<Index> changed(cells.begin(), cells.end());
-   std::erase_if(supports, [&changed](const Support &s) { return changed.contains(s.cell); });
-   for (const Index cell : changed)
-      if (fixed != 0)
-         supports.push_back({cell, fixed});
-   std::sort(supports.begin(), supports.end(),
-             [](const Support &a, const Support &b) { return a.cell < b.cell; });
-   return edit.commit(countText("support", cells.size()));
-}
-
-Result<std::string> unsupport(CommandContext &context, const nlohmann::json &arguments)
-{
-   Edit edit(context, "unsupport", arguments);
-   const Box box = edit.arguments().has("box") ? edit.box() : Box();
-   const auto cells = edit.arguments().has("box") ? std::vector<Index>() : edit.cells();
-   const auto removed = std::erase_if(edit.design().setup.supports, [&](const Support &s) {
-      return box.contains(s.cell) || std::find(cells.begin(), cells.end(), s.cell) != cells.end();
-   });
-   if (removed == 0)
-      edit.fail(ErrorCode::invalid, "none of these cells is supported");
-   return edit.commit("release");
-}
-
-Result<std::string> load(CommandContext &context, const nlohmann::json &arguments)
-{
-   Edit edit(context, "load", arguments);
-   const auto item = readLoad(edit.arguments());
-   existingCells(edit);
-   auto &loads = edit.design().setup.loads;
-   removeAt(loads, item.cell);
-   if (item.force != std::array<double, 3>{} || item.moment != std::array<double, 3>{})
-      loads.push_back(item);
-   return edit.commit("load");
-}
-
 Result<std::string> source(CommandContext &context, const nlohmann::json &arguments)
 {
    Edit edit(context, "source", arguments);
-   const auto cells = existingCells(edit);
+   const Index cell = edit.arguments().at("cell").index();
+   if (edit.ok() && edit.hierarchy() && edit.hierarchy()->at(cell).empty())
+      edit.fail(ErrorCode::invalid, fmt::format("there is no cell at {}", cellText(cell)));
    auto &sources = edit.design().setup.sources;
-   const auto known = std::find_if(sources.begin(), sources.end(),
-                                   [&](const Source &s) { return !cells.empty() && s.cell == cells[0]; });
+   const auto known =
+       std::find_if(sources.begin(), sources.end(), [&](const Source &s) { return s.cell == cell; });
    // What is not given stays as it is.
    nlohmann::json merged =
        known == sources.end() ? nlohmann::json::object() : nlohmann::json(sourceJson(*known));
@@ -121,9 +45,9 @@ Result<std::string> removeSource(CommandContext &context, const nlohmann::json &
 {
    Edit edit(context, "remove-source", arguments);
    const Index cell = edit.arguments().at("cell").index();
-   const auto before = edit.design().setup.sources.size();
-   removeAt(edit.design().setup.sources, cell);
-   if (edit.ok() && edit.design().setup.sources.size() == before)
+   const auto removed =
+       std::erase_if(edit.design().setup.sources, [cell](const Source &s) { return s.cell == cell; });
+   if (edit.ok() && removed == 0)
       edit.fail(ErrorCode::invalid, fmt::format("there is no source at {}", cellText(cell)));
    return edit.commit("remove source");
 }
@@ -213,22 +137,6 @@ Result<std::string> setSolver(CommandContext &context, const nlohmann::json &arg
    return edit.commit("set solver");
 }
 
-constexpr CommandParameter kSupport[] = {
-    {"cell", "index", false, "which cell; or `cells` or `box`"},
-    {"cells", "cells", false, "several cells"},
-    {"box", "box", false, "every cell in a box"},
-    {"fixed", "list", false, "of x, y, z, rx, ry, rz; default all"},
-};
-constexpr CommandParameter kUnsupport[] = {
-    {"cell", "index", false, "which cell; or `cells` or `box`"},
-    {"cells", "cells", false, "several cells"},
-    {"box", "box", false, "every cell in a box"},
-};
-constexpr CommandParameter kLoad[] = {
-    {"cell", "index", true, "which cell"},
-    {"force_N", "list", false, "along x, y and z; without force and moment the load is removed"},
-    {"moment_N_m", "list", false, "about x, y and z"},
-};
 constexpr CommandParameter kSource[] = {
     {"cell", "index", true, "a cell of a source material; what is not given stays as it is"},
     {"waveform", "text", false, "sine, square, saw or triangle"},
@@ -260,9 +168,6 @@ constexpr CommandParameter kChoice[] = {
 };
 
 constexpr Command kCommands[] = {
-    {"support", "Support cells", "Holds cells at rest, in all or some of their freedoms.", kSupport, support},
-    {"unsupport", "Release cells", "Removes supports.", kUnsupport, unsupport},
-    {"load", "Load cell", "Puts a constant force and moment on a cell.", kLoad, load},
     {"source", "Set signal", "Sets what a source cell drives its wires with.", kSource, source},
     {"remove-source", "Remove signal", "Leaves a source cell without a signal.", kCell, removeSource},
     {"gravity", "Set gravity", "Sets the acceleration that everything feels.", kGravity, gravity},

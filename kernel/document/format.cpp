@@ -141,7 +141,7 @@ public:
       if (top.has("assembly"))
          m_design.model.root = body(top.at("assembly"), {"cells", "instances"});
       if (top.has("simulation"))
-         m_design.setup = readSetup(top.at("simulation"));
+         m_design.setup = readSetup(top.at("simulation"), m_design.model);
       if (top.has("parts"))
          readChoice(top.at("parts"), m_design.assembly.parts, m_design.assembly.partsValues);
       if (top.has("machine"))

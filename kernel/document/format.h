@@ -27,16 +27,26 @@ nlohmann::ordered_json sourceJson(const Source &source);
 Source readSource(const JsonPlace &place);
 nlohmann::ordered_json groundJson(const Ground &ground);
 Ground readGround(const JsonPlace &place, Ground ground);
-Load readLoad(const JsonPlace &place);
+/// Keys "cell", "box" or "material" of an entry.
+nlohmann::ordered_json whereJson(const Where &where);
+Where readWhere(const JsonPlace &place);
+nlohmann::ordered_json supportJson(const Support &support);
+Support readSupport(const JsonPlace &place);
+nlohmann::ordered_json driveJson(const Drive &drive);
+Drive readDrive(const JsonPlace &place);
 nlohmann::ordered_json loadJson(const Load &load);
+Load readLoad(const JsonPlace &place);
+nlohmann::ordered_json startJson(const Start &start);
+Start readStart(const JsonPlace &place);
 nlohmann::ordered_json valuesJson(const Values &values);
 nlohmann::ordered_json fixedJson(std::uint8_t fixed);
 std::uint8_t readFixed(const JsonPlace &place);
 nlohmann::ordered_json setupJson(const Setup &setup);
-Setup readSetup(const JsonPlace &place);
+/// Entries on a material that `model` does not have are refused.
+Setup readSetup(const JsonPlace &place, const Model &model);
 nlohmann::ordered_json indexJson(Index index);
 
-/// Refuses supports, loads and sources given twice for one cell, and sorts supports.
+/// Refuses two sources of one cell, and sorts supports.
 void orderSetup(Setup &setup, const JsonPlace &place);
 
 } // namespace diatom

@@ -9,6 +9,7 @@ using nlohmann::ordered_json;
 
 constexpr const char *kPortNames[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
 constexpr std::uint8_t kAllPorts = 0x3f;
+constexpr const char *kCellModels[] = {"bond", "block", "solid"};
 
 ordered_json bondsJson(const BondConstants &bonds)
 {
@@ -91,6 +92,10 @@ ordered_json materialJson(const Material &material)
                         {"role", kRoles[static_cast<std::size_t>(material.role)]}};
    if (material.bonds)
       json["bonds"] = bondsJson(*material.bonds);
+   if (material.cellModel != CellModel::bond)
+      json["cell_model"] = kCellModels[static_cast<std::size_t>(material.cellModel)];
+   if (material.poissonCoupling)
+      json["poisson_coupling"] = true;
    if (material.ports != kAllPorts) {
       auto ports = ordered_json::array();
       for (unsigned port = 0; port < 6; ++port)
@@ -109,7 +114,7 @@ Material readMaterial(const JsonPlace &place)
    if (!place.object())
       return material;
    place.known({"id", "name", "color", "density_kg_m3", "youngs_modulus_Pa", "poisson_ratio", "damping_ratio",
-                "role", "bonds", "ports", "actuation"});
+                "role", "bonds", "cell_model", "poisson_coupling", "ports", "actuation"});
    material.id = place.at("id").identifier();
    material.name = place.textOr("name", material.id);
    if (place.has("color"))
@@ -121,6 +126,9 @@ Material readMaterial(const JsonPlace &place)
    material.dampingRatio = place.numberOr("damping_ratio", 0, 0, 1000);
    if (place.has("bonds"))
       material.bonds = readBonds(place.at("bonds"));
+   if (place.has("cell_model"))
+      material.cellModel = static_cast<CellModel>(place.at("cell_model").word({"bond", "block", "solid"}));
+   material.poissonCoupling = place.booleanOr("poisson_coupling", false);
    if (place.has("role"))
       material.role = static_cast<ElectricalRole>(
           place.at("role").word({"insulator", "conductor", "source", "actuator"}));

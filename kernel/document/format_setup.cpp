@@ -1,5 +1,6 @@
 // The simulation's set-up between Setup and JSON.
 #include "document/format.h"
+#include "scene/where.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::uint8_t kAllFixed = 0x3f;
-constexpr const char *kFreedoms[] = {"x", "y", "z", "rx", "ry", "rz"};
 constexpr const char *kWaveforms[] = {"sine", "square", "saw", "triangle"};
 
 template<typename Item, typename Read>
@@ -25,20 +24,29 @@ std::vector<Item> readList(const JsonPlace &list, Read read)
    return items;
 }
 
+/// Adds a list of entries under its key, where there are any.
 template<typename Item>
-void refuseTwice(const std::vector<Item> &items, const JsonPlace &place, const char *what)
+void putList(ordered_json &json, const char *key, const std::vector<Item> &items,
+             ordered_json (*write)(const Item &))
 {
-   std::set<Index> seen;
-   for (const auto &item : items)
-      if (!seen.insert(item.cell).second)
-         place.fail(fmt::format("cell [{}, {}, {}] has two {}; remove one of them", item.cell.x, item.cell.y,
-                                item.cell.z, what));
+   for (const Item &item : items)
+      json[key].push_back(write(item));
 }
 
-Support readSupport(const JsonPlace &place)
+/// Reads the list under a key; entries on a material that is not there are refused.
+template<typename Item>
+std::vector<Item> readEntries(const JsonPlace &place, const char *key, const Model &model,
+                              Item (*read)(const JsonPlace &))
 {
-   place.known({"cell", "fixed"});
-   return {place.at("cell").index(), place.has("fixed") ? readFixed(place.at("fixed")) : kAllFixed};
+   if (!place.has(key))
+      return {};
+   return readList<Item>(place.at(key), [&](const JsonPlace &entry) {
+      Item item = read(entry);
+      if (const auto *of = std::get_if<OfMaterial>(&item.where); of && model.material(of->id) == 0)
+         entry.at("material")
+             .fail(fmt::format("there is no material \"{}\"; add it to /materials or name another", of->id));
+      return item;
+   });
 }
 
 Reference readReference(const JsonPlace &place)
@@ -119,25 +127,6 @@ Ground readGround(const JsonPlace &place, Ground ground)
    return ground;
 }
 
-ordered_json loadJson(const Load &load)
-{
-   return {{"cell", indexJson(load.cell)}, {"force_N", load.force}, {"moment_N_m", load.moment}};
-}
-
-Load readLoad(const JsonPlace &place)
-{
-   Load load;
-   if (!place.object())
-      return load;
-   place.known({"cell", "force_N", "moment_N_m"});
-   load.cell = place.at("cell").index();
-   if (place.has("force_N"))
-      load.force = place.at("force_N").numbers3();
-   if (place.has("moment_N_m"))
-      load.moment = place.at("moment_N_m").numbers3();
-   return load;
-}
-
 ordered_json valuesJson(const Values &values)
 {
    auto json = ordered_json::object();
@@ -149,16 +138,11 @@ ordered_json valuesJson(const Values &values)
 ordered_json setupJson(const Setup &setup)
 {
    ordered_json json = {{"gravity_m_s2", setup.gravity}};
-   for (const auto &support : setup.supports) {
-      ordered_json entry = {{"cell", indexJson(support.cell)}};
-      if (support.fixed != kAllFixed)
-         entry["fixed"] = fixedJson(support.fixed);
-      json["supports"].push_back(std::move(entry));
-   }
-   for (const auto &load : setup.loads)
-      json["loads"].push_back(loadJson(load));
-   for (const auto &source : setup.sources)
-      json["sources"].push_back(sourceJson(source));
+   putList(json, "supports", setup.supports, supportJson);
+   putList(json, "drives", setup.drives, driveJson);
+   putList(json, "loads", setup.loads, loadJson);
+   putList(json, "starts", setup.starts, startJson);
+   putList(json, "sources", setup.sources, sourceJson);
    if (setup.ground != Ground{})
       json["ground"] = groundJson(setup.ground);
    json["drag_1_s"] = setup.drag;
@@ -174,26 +158,28 @@ ordered_json setupJson(const Setup &setup)
 
 void orderSetup(Setup &setup, const JsonPlace &place)
 {
-   refuseTwice(setup.supports, place, "supports");
-   refuseTwice(setup.loads, place, "loads");
-   refuseTwice(setup.sources, place, "sources");
-   std::sort(setup.supports.begin(), setup.supports.end(),
-             [](const Support &a, const Support &b) { return a.cell < b.cell; });
+   std::set<Index> seen;
+   for (const Source &source : setup.sources)
+      if (!seen.insert(source.cell).second)
+         place.fail(fmt::format("cell [{}, {}, {}] has two sources; remove one of them", source.cell.x,
+                                source.cell.y, source.cell.z));
+   std::stable_sort(setup.supports.begin(), setup.supports.end(),
+                    [](const Support &a, const Support &b) { return before(a.where, b.where); });
 }
 
-Setup readSetup(const JsonPlace &place)
+Setup readSetup(const JsonPlace &place, const Model &model)
 {
    Setup setup;
    if (!place.object())
       return setup;
-   place.known({"gravity_m_s2", "supports", "loads", "sources", "ground", "drag_1_s", "step_s", "solver",
-                "references", "effects"});
+   place.known({"gravity_m_s2", "supports", "drives", "loads", "starts", "sources", "ground", "drag_1_s",
+                "step_s", "solver", "references", "effects"});
    if (place.has("gravity_m_s2"))
       setup.gravity = place.at("gravity_m_s2").numbers3();
-   if (place.has("supports"))
-      setup.supports = readList<Support>(place.at("supports"), readSupport);
-   if (place.has("loads"))
-      setup.loads = readList<Load>(place.at("loads"), readLoad);
+   setup.supports = readEntries(place, "supports", model, readSupport);
+   setup.drives = readEntries(place, "drives", model, readDrive);
+   setup.loads = readEntries(place, "loads", model, readLoad);
+   setup.starts = readEntries(place, "starts", model, readStart);
    if (place.has("sources"))
       setup.sources = readList<Source>(place.at("sources"), readSource);
    if (place.has("ground"))

@@ -225,7 +225,7 @@ private:
          if (m_cells.at(cell).empty())
             note(fmt::format("{}: no cell there to fix; left out", list.at(i).pointer()));
          else
-            m_opened.design.setup.supports.push_back({cell, 0x3f});
+            m_opened.design.setup.supports.push_back({cell});
       }
    }
 

@@ -60,11 +60,15 @@ std::uint64_t cellCount(const Hierarchy &hierarchy, std::optional<MaterialIndex>
 Status cellTriangles(const Hierarchy &hierarchy, const StlOptions &options, const Triangle &triangle,
                      const Job &job)
 {
+   std::vector<Vec3> corners;
    return visitSurface(
        hierarchy, options.material, false,
        [&](const SurfaceFace &face) {
-          for (std::size_t i = 2; i < face.corners.size(); ++i)
-             triangle(face.corners[0], face.corners[i - 1], face.corners[i]);
+          corners.assign(face.corners.begin(), face.corners.end());
+          if (options.moved)
+             std::transform(corners.begin(), corners.end(), corners.begin(), options.moved);
+          for (std::size_t i = 2; i < corners.size(); ++i)
+             triangle(corners[0], corners[i - 1], corners[i]);
        },
        job);
 }

@@ -7,6 +7,7 @@
 #include "parts/decomposition.h"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,6 +22,8 @@ struct StlOptions
    bool ascii = false;
    int detail = -1;    // of part meshes; -1 = the finest
    double unit = 1e-3; // metres per STL unit: millimetres by custom
+   /// Where a corner of cells is to be, from where it is at rest; none leaves them at rest.
+   std::function<Vec3(const Vec3 &)> moved;
 };
 
 struct StlReport

@@ -1,8 +1,9 @@
 // The effects table. A row looks at the scene and says whether it calls for the effect, and why; adding an
 // effect adds a row. Costs are measured by benchmarks, so that the table itself has none.
-#include "scene/effects.h"
+#include "scene/effect_looks.h"
 
 #include "core/text.h"
+#include "scene/where.h"
 
 #include <fmt/format.h>
 
@@ -12,24 +13,6 @@
 namespace diatom {
 
 namespace {
-
-constexpr std::size_t kEvidence = 3;
-/// Cells looked at for evidence; a material that turns up later is named without a cell.
-constexpr std::int64_t kSearched = 20'000'000;
-
-struct Look
-{
-   const Hierarchy &hierarchy;
-   const Setup &setup;
-   const Networks &networks;
-};
-
-struct Verdict
-{
-   bool on = false;
-   std::string why;
-   std::vector<Index> evidence;
-};
 
 /// What forcing an effect on means where the scene does not call for it.
 enum class Forcing : std::uint8_t {
@@ -46,19 +29,6 @@ struct Row
    Verdict (*look)(const Look &);
 };
 
-std::vector<Index> cellsWhere(const Look &look, const std::function<bool(Cell)> &wanted)
-{
-   std::vector<Index> cells;
-   std::int64_t seen = 0;
-   look.hierarchy.visit(look.hierarchy.bounds(), [&](Index i, Cell cell) {
-      if (wanted(cell))
-         cells.push_back(i);
-      return cells.size() < kEvidence && ++seen < kSearched;
-   });
-   std::sort(cells.begin(), cells.end());
-   return cells;
-}
-
 template<typename Item>
 std::vector<Index> firstCells(const std::vector<Item> &items)
 {
@@ -68,51 +38,34 @@ std::vector<Index> firstCells(const std::vector<Item> &items)
    return cells;
 }
 
-/// Materials in use for which `holds`, with up to a few cells of them.
-struct MaterialEvidence
+/// Cells of the entries, up to a few, in the entries' order.
+template<typename Item>
+std::vector<Index> cellsOf(const Look &look, const std::vector<const Item *> &items)
 {
-   std::vector<std::string> ids;
    std::vector<Index> cells;
+   for (std::size_t i = 0; i < items.size() && cells.size() < kEvidence; ++i)
+      for (const Index cell : someCells(look.hierarchy, items[i]->where, kEvidence - cells.size()))
+         if (std::find(cells.begin(), cells.end(), cell) == cells.end())
+            cells.push_back(cell);
+   return cells;
+}
 
-   std::string names() const
-   {
-      std::string text;
-      for (const auto &id : ids)
-         text += (text.empty() ? "" : ", ") + id;
-      return text;
-   }
-};
-
-MaterialEvidence materialsWhere(const Look &look, bool (*holds)(const Material &))
+/// "3 loads are set, the first on cell (1, 2, 3)".
+template<typename Item>
+std::string countText(const std::vector<const Item *> &items, const char *one, const char *many)
 {
-   const auto &materials = *look.hierarchy.model().materials;
-   const auto counts = look.hierarchy.countByMaterial();
-   std::vector<bool> found(materials.size() + 1, false);
-   MaterialEvidence evidence;
-   for (std::size_t m = 1; m <= materials.size() && m < counts.size(); ++m) {
-      found[m] = counts[m] > 0 && holds(materials[m - 1]);
-      if (found[m])
-         evidence.ids.push_back(materials[m - 1].id);
-   }
-   if (!evidence.ids.empty())
-      evidence.cells = cellsWhere(look, [&](Cell cell) { return found[cell.material]; });
-   return evidence;
+   const std::string first = whereText(items.front()->where);
+   return items.size() == 1 ? fmt::format("one {} on {}", one, first)
+                            : fmt::format("{} {}, the first on {}", items.size(), many, first);
 }
 
 Verdict lookRotation(const Look &look)
 {
    if (look.hierarchy.cells() < 2)
       return {false, "a single cell has no bond that could turn", {}};
-   return {true, "bonded cells may turn by any angle", cellsWhere(look, [](Cell) { return true; })};
-}
-
-Verdict lookDamping(const Look &look)
-{
-   const auto damped =
-       materialsWhere(look, [](const Material &material) { return material.dampingRatio > 0; });
-   if (damped.ids.empty())
-      return {false, "no material in use has a damping ratio", {}};
-   return {true, "materials with a damping ratio: " + damped.names(), damped.cells};
+   return {true,
+           "large rotations: bonded cells may turn by any angle; switched off, turns are taken as small",
+           cellsWhere(look, [](Cell) { return true; })};
 }
 
 Verdict lookGravity(const Look &look)
@@ -178,6 +131,8 @@ Verdict lookFriction(const Look &look)
 
 Verdict lookDrag(const Look &look)
 {
+   if (auto still = withoutMotion(look))
+      return *std::move(still);
    if (look.setup.drag <= 0)
       return {false, "no drag is set", {}};
    return {true, fmt::format("drag slows all motion at {} per second", numberText(look.setup.drag)), {}};
@@ -185,15 +140,23 @@ Verdict lookDrag(const Look &look)
 
 Verdict lookLoads(const Look &look)
 {
-   std::vector<Index> loaded;
+   std::vector<const Load *> loads;
    for (const Load &load : look.setup.loads)
       if (load.force != std::array<double, 3>{} || load.moment != std::array<double, 3>{})
-         loaded.push_back(load.cell);
-   if (loaded.empty())
+         loads.push_back(&load);
+   if (loads.empty())
       return {false, "no load is set", {}};
-   const std::size_t count = loaded.size();
-   loaded.resize(std::min(count, kEvidence));
-   return {true, fmt::format("{} cells carry a load", count), loaded};
+   return {true, countText(loads, "load acts", "loads act"), cellsOf(look, loads)};
+}
+
+Verdict lookDriven(const Look &look)
+{
+   std::vector<const Drive *> drives;
+   for (const Drive &drive : look.setup.drives)
+      drives.push_back(&drive);
+   if (drives.empty())
+      return {false, "no freedom is driven along a curve", {}};
+   return {true, countText(drives, "curve drives a freedom", "curves drive freedoms"), cellsOf(look, drives)};
 }
 
 Verdict lookSelfContact(const Look &)
@@ -201,49 +164,12 @@ Verdict lookSelfContact(const Look &)
    return {false, "not available in this version: cells that are not joined pass through each other", {}};
 }
 
-bool differsByDirection(const Material &material)
-{
-   const bool sideways = material.actuation.mode == Actuation::Mode::shear ||
-                         material.actuation.mode == Actuation::Mode::bending;
-   if (material.role == ElectricalRole::actuator && sideways)
-      return true; // shears or bends towards a direction of its own
-   if (!material.bonds)
-      return false;
-   const BondConstants &k = *material.bonds;
-   const double shear = k.shear[0][1];
-   for (int axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<std::size_t>(axis), b = static_cast<std::size_t>((axis + 1) % 3);
-      if (k.axial[a] != k.axial[0] || k.bending[a] != k.bending[0] || k.torsion[a] != k.torsion[0] ||
-          k.shear[a][b] != shear || k.shear[b][a] != shear)
-         return true;
-   }
-   return false;
-}
-
-Verdict lookOrientation(const Look &look)
-{
-   const auto directed = materialsWhere(look, differsByDirection);
-   if (directed.ids.empty())
-      return {
-          false, "every cell in use is the same in all directions, so that turned cells behave alike", {}};
-   return {true,
-           "cells differ by direction and are turned with the cell when the scene is built, at no cost in a "
-           "step: " +
-               directed.names(),
-           directed.cells};
-}
-
-Verdict lookPoisson(const Look &)
-{
-   return {false, "not available in this version: bonds along different axes do not couple", {}};
-}
-
 Verdict lookPotentialField(const Look &)
 {
    return {false, "not available in this version: the space around conductors carries no field", {}};
 }
 
-constexpr std::array<Row, 13> kEffects{{
+constexpr std::array<Row, 15> kEffects{{
     {"rotation", true, Forcing::harmless, lookRotation},
     {"damping", true, Forcing::harmless, lookDamping},
     {"gravity", true, Forcing::harmless, lookGravity},
@@ -253,9 +179,11 @@ constexpr std::array<Row, 13> kEffects{{
     {"friction", true, Forcing::needsScene, lookFriction},
     {"drag", true, Forcing::harmless, lookDrag},
     {"loads", true, Forcing::harmless, lookLoads},
+    {"driven", true, Forcing::harmless, lookDriven},
     {"self-contact", false, Forcing::impossible, lookSelfContact},
     {"orientation", false, Forcing::needsScene, lookOrientation},
-    {"poisson", false, Forcing::impossible, lookPoisson},
+    {"solid", true, Forcing::needsScene, lookSolid},
+    {"poisson", true, Forcing::harmless, lookPoisson},
     {"potential-field", false, Forcing::impossible, lookPotentialField},
 }};
 
@@ -284,9 +212,10 @@ Effect plan(const Row &row, const Look &look)
 
 } // namespace
 
-std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, const Networks &networks)
+std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, const Networks &networks,
+                                Analysis analysis)
 {
-   const Look look{hierarchy, setup, networks};
+   const Look look{hierarchy, setup, networks, analysis};
    std::vector<Effect> effects;
    for (const Row &row : kEffects)
       effects.push_back(plan(row, look));

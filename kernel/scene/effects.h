@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cells/hierarchy.h"
+#include "scene/analysis.h"
 #include "scene/networks.h"
 #include "scene/setup.h"
 
@@ -25,11 +26,16 @@ struct Effect
 
 /// The effects table applied to a scene, in the table's order. An effect that this version cannot do is never
 /// on, even when asked for: `forced` then says that it was, and `why` that it cannot be had.
-std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, const Networks &networks);
+std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, const Networks &networks,
+                                Analysis analysis = Analysis::dynamics);
 
 /// Names of the table's effects, in order.
 std::vector<std::string> effectNames();
 /// Whether a solver is told of the effect by name; the others are settled while the scene is built.
 bool effectIsForSolver(std::string_view name);
+
+/// Whether a material has a Poisson's ratio that its bonds leave out, so that the effect "poisson" can add
+/// it: solid elements have it in themselves, and bond constants of one's own have none.
+bool bondsLeaveRatioOut(const Material &material);
 
 } // namespace diatom

@@ -1,13 +1,14 @@
 #include "scene/problems.h"
 
 #include "scene/cell_list.h"
+#include "scene/holding.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
+#include <initializer_list>
 #include <map>
-#include <set>
 
 namespace diatom {
 
@@ -24,18 +25,69 @@ void addMissing(std::vector<Problem> &problems, const char *what, const std::vec
 }
 
 template<typename Item>
-std::vector<Index> withoutCell(const Hierarchy &hierarchy, const std::vector<Item> &items)
+void findMissing(std::vector<Problem> &problems, const char *what, const Hierarchy &hierarchy,
+                 const std::vector<Item> &items)
 {
    std::vector<Index> missing;
-   for (const Item &item : items)
-      if (!inRange(item.cell) || hierarchy.at(item.cell).empty())
-         missing.push_back(item.cell);
-   return missing;
+   for (const Item &item : items) {
+      if (anyCell(hierarchy, item.where))
+         continue;
+      if (const auto *cell = std::get_if<Index>(&item.where))
+         missing.push_back(*cell);
+      else
+         problems.push_back(
+             {Problem::Severity::error,
+              fmt::format("{}-without-cell", what),
+              fmt::format("a {} is set on {}, where the design has no cell; place cells there or "
+                          "remove the {}",
+                          what, whereText(item.where), what),
+              {}});
+   }
+   addMissing(problems, what, missing);
+}
+
+bool finite(std::initializer_list<std::array<double, 3>> vectors)
+{
+   for (const auto &vector : vectors)
+      for (const double value : vector)
+         if (!std::isfinite(value))
+            return false;
+   return true;
+}
+
+void findNotNumbers(std::vector<Problem> &problems, const Setup &setup)
+{
+   const auto report = [&](const char *what, const Where &where) {
+      problems.push_back(
+          {Problem::Severity::error,
+           "not-a-number",
+           fmt::format("the {} on {} has a value that is not a number; set it anew", what, whereText(where)),
+           {}});
+   };
+   for (const Load &load : setup.loads)
+      if (!finite({load.force, load.moment}))
+         report("load", load.where);
+   for (const Start &start : setup.starts)
+      if (!finite({start.displacement, start.turn, start.velocity, start.spin,
+                   start.about.value_or(std::array<double, 3>{})}))
+         report("start", start.where);
+}
+
+void findBadCurves(std::vector<Problem> &problems, const Setup &setup)
+{
+   for (const Drive &drive : setup.drives) {
+      const std::string fault = drive.freedom < 0 || drive.freedom >= static_cast<int>(kFreedoms.size())
+                                    ? "names no degree of freedom"
+                                    : curveFault(drive.curve);
+      if (!fault.empty())
+         problems.push_back({Problem::Severity::error,
+                             "bad-curve",
+                             fmt::format("the drive on {} {}; set it anew", whereText(drive.where), fault),
+                             {}});
+   }
 }
 
 } // namespace
-
-std::string indexText(Index cell) { return fmt::format("({}, {}, {})", cell.x, cell.y, cell.z); }
 
 std::string indicesText(const std::vector<Index> &cells)
 {
@@ -69,31 +121,31 @@ Result<Bodies> findBodies(const Hierarchy &hierarchy, const Job &job, std::int64
 std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &setup)
 {
    std::vector<Problem> problems;
-   addMissing(problems, "support", withoutCell(hierarchy, setup.supports));
-   addMissing(problems, "load", withoutCell(hierarchy, setup.loads));
-   addMissing(problems, "source", withoutCell(hierarchy, setup.sources));
-   std::set<Index> seen;
-   std::vector<Index> repeated;
-   for (const Support &support : setup.supports)
-      if (!seen.insert(support.cell).second)
-         repeated.push_back(support.cell);
-   if (!repeated.empty())
-      problems.push_back(
-          {Problem::Severity::error, "repeated-support",
-           fmt::format("a cell has more than one support: {}; keep one", indicesText(repeated)), repeated});
+   findMissing(problems, "support", hierarchy, setup.supports);
+   findMissing(problems, "drive", hierarchy, setup.drives);
+   findMissing(problems, "load", hierarchy, setup.loads);
+   findMissing(problems, "start", hierarchy, setup.starts);
+   std::vector<Index> missing;
+   for (const Source &source : setup.sources)
+      if (!inRange(source.cell) || hierarchy.at(source.cell).empty())
+         missing.push_back(source.cell);
+   addMissing(problems, "source", missing);
+   findNotNumbers(problems, setup);
+   findBadCurves(problems, setup);
+   if (problems.empty()) // what is driven twice can be told only of sound entries
+      findConflicts(problems, hierarchy, setup);
    return problems;
 }
 
-std::vector<Problem> findFloatingBodies(const Bodies &bodies, const Setup &setup)
+std::vector<Problem> findFloatingBodies(const Hierarchy &hierarchy, const Bodies &bodies, const Setup &setup)
 {
    std::vector<Problem> problems;
    if (setup.gravity == std::array<double, 3>{} || setup.ground.present)
       return problems;
+   const Holding holding(hierarchy, setup);
    for (const auto &body : bodies) {
-      const bool held =
-          std::any_of(setup.supports.begin(), setup.supports.end(), [&](const Support &support) {
-             return (support.fixed & 7) != 0 && std::binary_search(body.begin(), body.end(), support.cell);
-          });
+      const bool held = std::any_of(body.begin(), body.end(),
+                                    [&](Index cell) { return (holding.freedoms(cell) & 7) != 0; });
       if (!held)
          problems.push_back(
              {Problem::Severity::warning, "floating-body",

@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "scene/networks.h"
 #include "scene/setup.h"
+#include "scene/where.h"
 
 #include <string>
 #include <vector>
@@ -20,15 +21,20 @@ using Bodies = std::vector<std::vector<Index>>;
 /// Errors: more than `limit` cells, cancelled.
 Result<Bodies> findBodies(const Hierarchy &hierarchy, const Job &job, std::int64_t limit = 20'000'000);
 
-/// Errors "support-without-cell", "load-without-cell", "source-without-cell" and "repeated-support".
+/// Errors "support-without-cell" (and drive-, load-, start-, source-), "not-a-number", "bad-curve",
+/// "driven-twice", and "held-and-driven".
 std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &setup);
 
 /// Warnings "floating-body": bodies that fall for ever, as there is gravity but neither ground nor a support
 /// on them.
-std::vector<Problem> findFloatingBodies(const Bodies &bodies, const Setup &setup);
+std::vector<Problem> findFloatingBodies(const Hierarchy &hierarchy, const Bodies &bodies, const Setup &setup);
 
-/// "(1, 2, 3)".
-std::string indexText(Index cell);
+/// Warnings "not-held" and "may-turn": bodies that supports and drives leave free to move, or only to turn,
+/// as a whole; the text says how. A body that may turn can still have a static balance, like a pendulum. None
+/// where a ground may hold them.
+std::vector<Problem> findUnheldBodies(const Hierarchy &hierarchy, const Bodies &bodies, const Setup &setup,
+                                      const Job &job);
+
 /// Up to four cells: "(1, 2, 3), (4, 5, 6) and 7 more".
 std::string indicesText(const std::vector<Index> &cells);
 

@@ -18,10 +18,11 @@ namespace {
 constexpr std::int64_t kGrain = 1 << 14;
 
 /// Columns of the property table in the order of propertiesOf(): what solvers ask for by name.
-constexpr std::array<const char *, 19> kProperties{
-    "density",   "youngs_modulus", "poisson_ratio", "damping_ratio", "axial_x",  "axial_y",  "axial_z",
-    "shear_xy",  "shear_xz",       "shear_yx",      "shear_yz",      "shear_zx", "shear_zy", "bending_x",
-    "bending_y", "bending_z",      "torsion_x",     "torsion_y",     "torsion_z"};
+constexpr std::array<const char *, 21> kProperties{
+    "density",   "youngs_modulus", "poisson_ratio",   "damping_ratio", "axial_x",   "axial_y",
+    "axial_z",   "shear_xy",       "shear_xz",        "shear_yx",      "shear_yz",  "shear_zx",
+    "shear_zy",  "bending_x",      "bending_y",       "bending_z",     "torsion_x", "torsion_y",
+    "torsion_z", "cell_model",     "poisson_coupling"};
 
 std::array<double, kProperties.size()> propertiesOf(const Material &material)
 {
@@ -39,6 +40,7 @@ std::array<double, kProperties.size()> propertiesOf(const Material &material)
                                              k.torsion[0],  k.torsion[1],  k.torsion[2]};
       std::copy(constants.begin(), constants.end(), row.begin() + 4);
    }
+   row[19] = static_cast<double>(material.cellModel);
    return row;
 }
 
@@ -59,10 +61,12 @@ std::int32_t axisBetween(const Vec3 &a, const Vec3 &b)
 class SceneBuilder
 {
 public:
-   SceneBuilder(const Hierarchy &hierarchy, const Setup &setup, const Job &job)
+   SceneBuilder(const Hierarchy &hierarchy, const Setup &setup, Analysis analysis, const Job &job)
        : m_hierarchy(hierarchy), m_lattice(hierarchy.lattice()), m_setup(setup), m_job(job),
          m_scene(new Scene)
-   {}
+   {
+      m_scene->m_analysis = analysis;
+   }
 
    Result<std::unique_ptr<Scene>> build(std::int64_t cellLimit);
 
@@ -71,16 +75,17 @@ private:
    void addCells(const CellList &cells);
    Status addLinks(const CellList &cells);
    void addMaterials();
-   void addSupportsAndLoads();
+   void describe();
+   void addBoundary();
    void addGround();
    void addActuation();
    std::int64_t sourceRow(int net, std::map<std::pair<int, bool>, std::int64_t> &rows,
-                          Scene::ChannelData &sources) const;
+                          ChannelRows &sources) const;
    void finish();
 
-   Scene::ChannelData &channel(const char *name, std::int64_t stride)
+   ChannelRows &channel(const char *name, std::int64_t stride)
    {
-      return m_scene->m_channelData.emplace_back(Scene::ChannelData{name, {}, {}, stride});
+      return m_scene->m_channelData.emplace_back(ChannelRows{name, stride, {}, {}});
    }
    bool on(std::string_view effect) const
    {
@@ -180,40 +185,47 @@ Status SceneBuilder::addLinks(const CellList &cells)
 void SceneBuilder::addMaterials()
 {
    Scene &scene = *m_scene;
+   const auto asked = m_setup.effects.find("poisson");
+   const bool all = asked != m_setup.effects.end() && asked->second; // forced on: whatever has a ratio
    for (const Material &material : *m_hierarchy.model().materials) {
-      const auto row = propertiesOf(material);
+      auto row = propertiesOf(material);
+      row[20] = on("poisson") && bondsLeaveRatioOut(material) && (all || material.poissonCoupling) ? 1 : 0;
       scene.m_property.insert(scene.m_property.end(), row.begin(), row.end());
+      scene.m_materialIds.push_back(material.id);
    }
    scene.m_propertyNames.assign(kProperties.begin(), kProperties.end());
 }
 
-void SceneBuilder::addSupportsAndLoads()
+/// The view of cells, links and materials, which the channels are made from.
+void SceneBuilder::describe()
 {
-   std::map<std::int64_t, double> fixed;
-   for (const Support &support : m_setup.supports)
-      fixed[m_scene->cellAt(support.cell)] = support.fixed;
-   if (!fixed.empty()) {
-      auto &data = channel("fixed", 1);
-      for (const auto &[cell, mask] : fixed) {
-         data.where.push_back(cell);
-         data.values.push_back(mask);
-      }
-   }
-   if (!on("loads"))
-      return;
-   std::map<std::int64_t, std::array<double, 6>> sums; // several loads on one cell add up
-   for (const Load &load : m_setup.loads) {
-      auto &sum = sums[m_scene->cellAt(load.cell)];
-      for (std::size_t k = 0; k < 3; ++k) {
-         sum[k] += load.force[k];
-         sum[k + 3] += load.moment[k];
-      }
-   }
-   auto &data = channel("force", 6);
-   for (const auto &[cell, sum] : sums) {
-      data.where.push_back(cell);
-      data.values.insert(data.values.end(), sum.begin(), sum.end());
-   }
+   static_assert(sizeof(Index) == 3 * sizeof(std::int32_t), "the indices are handed out as numbers");
+   Scene &scene = *m_scene;
+   diatom_scene &view = scene.m_view;
+   view.size = sizeof view;
+   view.pitch = m_lattice.spec().pitch;
+   view.cells = static_cast<std::int64_t>(scene.m_index.size());
+   view.cell_index = &scene.m_index.front().x;
+   view.cell_material = scene.m_material.data();
+   view.cell_position = scene.m_position.data();
+   view.cell_orientation = scene.m_orientation.data();
+   view.cell_extent = scene.m_extent.data();
+   view.links = static_cast<std::int64_t>(scene.m_linkA.size());
+   view.link_a = scene.m_linkA.data();
+   view.link_b = scene.m_linkB.data();
+   view.link_axis = scene.m_linkAxis.data();
+   view.materials = static_cast<std::int32_t>(m_hierarchy.model().materials->size());
+   view.properties = static_cast<std::int32_t>(kProperties.size());
+   view.property = scene.m_property.data();
+   view.analysis = analysisName(scene.m_analysis);
+}
+
+void SceneBuilder::addBoundary()
+{
+   Scene &scene = *m_scene;
+   const BoundaryWanted wanted{on("driven"), on("loads"), scene.m_analysis == Analysis::dynamics};
+   for (ChannelRows &rows : boundaryChannels(scene, m_setup, wanted))
+      scene.m_channelData.push_back(std::move(rows));
 }
 
 void SceneBuilder::addGround()
@@ -231,7 +243,7 @@ void SceneBuilder::addGround()
 /// Row of the "source" channel that drives a net, made at first use; -1 for a net at 0 V. A net at the -
 /// terminal of a source gets a row of its own with the amplitude negated.
 std::int64_t SceneBuilder::sourceRow(int net, std::map<std::pair<int, bool>, std::int64_t> &rows,
-                                     Scene::ChannelData &sources) const
+                                     ChannelRows &sources) const
 {
    const Network &network = m_scene->m_networks.nets[static_cast<std::size_t>(net)];
    if (network.source() < 0)
@@ -287,24 +299,8 @@ void SceneBuilder::finish()
       scene.m_channels.push_back(
           {data.name.c_str(), count, data.stride, whole ? nullptr : data.where.data(), data.values.data()});
    }
-   static_assert(sizeof(Index) == 3 * sizeof(std::int32_t), "the indices are handed out as numbers");
    diatom_scene &view = scene.m_view;
-   view.size = sizeof view;
-   view.pitch = m_lattice.spec().pitch;
-   view.cells = static_cast<std::int64_t>(scene.m_index.size());
-   view.cell_index = &scene.m_index.front().x;
-   view.cell_material = scene.m_material.data();
-   view.cell_position = scene.m_position.data();
-   view.cell_orientation = scene.m_orientation.data();
-   view.cell_extent = scene.m_extent.data();
-   view.links = static_cast<std::int64_t>(scene.m_linkA.size());
-   view.link_a = scene.m_linkA.data();
-   view.link_b = scene.m_linkB.data();
-   view.link_axis = scene.m_linkAxis.data();
-   view.materials = static_cast<std::int32_t>(m_hierarchy.model().materials->size());
-   view.properties = static_cast<std::int32_t>(kProperties.size());
    view.property_name = scene.m_propertyPointers.data();
-   view.property = scene.m_property.data();
    view.channels = static_cast<std::int64_t>(scene.m_channels.size());
    view.channel = scene.m_channels.data();
    view.effects = static_cast<std::int64_t>(scene.m_effectPointers.size());
@@ -316,7 +312,7 @@ Result<std::unique_ptr<Scene>> SceneBuilder::build(std::int64_t cellLimit)
    if (const Status sound = check(cellLimit); !sound)
       return sound.error();
    m_scene->m_networks = findNetworks(m_hierarchy, m_setup, m_job);
-   m_scene->m_effects = planEffects(m_hierarchy, m_setup, m_scene->m_networks);
+   m_scene->m_effects = planEffects(m_hierarchy, m_setup, m_scene->m_networks, m_scene->m_analysis);
    const auto cells = listCells(m_hierarchy, {}, cellLimit, m_job);
    if (!cells)
       return cells.error();
@@ -324,7 +320,8 @@ Result<std::unique_ptr<Scene>> SceneBuilder::build(std::int64_t cellLimit)
    if (const Status linked = addLinks(*cells); !linked)
       return linked.error();
    addMaterials();
-   addSupportsAndLoads();
+   describe();
+   addBoundary();
    addGround();
    addActuation();
    if (m_job.cancelled())
@@ -334,15 +331,38 @@ Result<std::unique_ptr<Scene>> SceneBuilder::build(std::int64_t cellLimit)
 }
 
 Result<std::unique_ptr<Scene>> Scene::build(const Hierarchy &hierarchy, const Setup &setup, const Job &job,
-                                            std::int64_t cellLimit)
+                                            Analysis analysis, std::int64_t cellLimit)
 {
-   return SceneBuilder(hierarchy, setup, job).build(cellLimit);
+   return SceneBuilder(hierarchy, setup, analysis, job).build(cellLimit);
 }
 
 std::int64_t Scene::cellAt(Index i) const
 {
    const auto found = std::lower_bound(m_index.begin(), m_index.end(), i);
    return found != m_index.end() && *found == i ? found - m_index.begin() : -1;
+}
+
+std::vector<std::int64_t> Scene::cellsIn(const Where &where) const
+{
+   std::vector<std::int64_t> cells;
+   if (const auto *cell = std::get_if<Index>(&where)) {
+      if (const std::int64_t number = cellAt(*cell); number >= 0)
+         cells.push_back(number);
+      return cells;
+   }
+   const auto *box = std::get_if<Box>(&where);
+   std::int32_t material = -1;
+   if (!box) {
+      const auto &id = std::get<OfMaterial>(where).id;
+      const auto found = std::find(m_materialIds.begin(), m_materialIds.end(), id);
+      if (id.empty() || found == m_materialIds.end())
+         return cells;
+      material = static_cast<std::int32_t>(found - m_materialIds.begin());
+   }
+   for (std::size_t i = 0; i < m_index.size(); ++i)
+      if (box ? box->contains(m_index[i]) : m_material[i] == material)
+         cells.push_back(static_cast<std::int64_t>(i));
+   return cells;
 }
 
 } // namespace diatom

@@ -1,4 +1,5 @@
-// What a simulation is told beyond the assembly: supports, loads, sources, ground, and how to step. SI.
+// What a simulation is told beyond the assembly: supports, drives, loads, sources, ground, and how to step.
+// SI.
 #pragma once
 
 #include "core/index.h"
@@ -8,7 +9,9 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace diatom {
@@ -28,20 +31,70 @@ struct Source
    friend bool operator==(const Source &, const Source &) = default;
 };
 
-/// Degrees of freedom held at rest: bit 0-2 translation x y z, bit 3-5 rotation.
+/// Every cell of one material, those of composites included.
+struct OfMaterial
+{
+   std::string id;
+   friend bool operator==(const OfMaterial &, const OfMaterial &) = default;
+};
+
+/// The cells that a support, drive, load or start is on: one cell, the cells in a box, or those of a
+/// material.
+using Where = std::variant<Index, Box, OfMaterial>;
+
+/// Degrees of freedom of a cell in the order of their numbers and mask bits.
+inline constexpr std::array<const char *, 6> kFreedoms{"x", "y", "z", "rx", "ry", "rz"};
+inline constexpr std::uint8_t kAllFreedoms = 0x3f;
+
+/// Degrees of freedom held at rest: bit 0-2 translation x y z, bit 3-5 rotation. Several supports of one cell
+/// hold together what each holds.
 struct Support
 {
-   Index cell;
-   std::uint8_t fixed = 0x3f;
+   Where where;
+   std::uint8_t fixed = kAllFreedoms;
    friend bool operator==(const Support &, const Support &) = default;
 };
 
-/// A constant force (N) and moment (N m) on a cell, world axes.
+struct CurvePoint
+{
+   double time = 0, value = 0;
+   friend bool operator==(const CurvePoint &, const CurvePoint &) = default;
+};
+
+/// Straight between its points, constant before the first and after the last; times ascend.
+using Curve = std::vector<CurvePoint>;
+
+/// One degree of freedom of each cell that follows a curve: displacement since rest (m), or turn since rest
+/// about that world axis (rad). It may not be held as well, nor follow two curves.
+struct Drive
+{
+   Where where;
+   int freedom = 0; // number in kFreedoms
+   Curve curve;
+   friend bool operator==(const Drive &, const Drive &) = default;
+};
+
+/// A constant force (N) and moment (N m) on each of the cells, world axes. Loads of one cell add up.
 struct Load
 {
-   Index cell;
+   Where where;
    std::array<double, 3> force{}, moment{};
    friend bool operator==(const Load &, const Load &) = default;
+};
+
+/// How each of the cells starts; turns are rotation vectors, world axes. With `about`, a point at rest, the
+/// cells start as one rigid body: its turn and spin are about that point, and also displace and move what
+/// lies off it. Starts of one cell add up; a freedom that is held or driven starts as its support or curve
+/// says.
+struct Start
+{
+   Where where;
+   std::array<double, 3> displacement{};       // m since rest
+   std::array<double, 3> turn{};               // rad since rest
+   std::array<double, 3> velocity{};           // m/s
+   std::array<double, 3> spin{};               // rad/s
+   std::optional<std::array<double, 3>> about; // m
+   friend bool operator==(const Start &, const Start &) = default;
 };
 
 struct Ground
@@ -66,8 +119,10 @@ struct Reference
 struct Setup
 {
    std::array<double, 3> gravity{0, 0, 0}; // m/s2
-   std::vector<Support> supports;          // sorted by cell, each cell once
+   std::vector<Support> supports;          // cells in order, then boxes, then materials
+   std::vector<Drive> drives;
    std::vector<Load> loads;
+   std::vector<Start> starts;
    std::vector<Source> sources;
    Ground ground;
    double drag = 0; // 1/s: slows all motion in proportion to mass; for settling

@@ -1,10 +1,8 @@
-// A running simulation: a solver plugin's instance on a scene, stepped, probed and recorded.
+// Motion in time: a solver plugin's instance on a scene, stepped, probed and recorded.
 #pragma once
 
-#include "core/job.h"
-#include "core/result.h"
-#include "plugins/catalogue.h"
-#include "scene/scene.h"
+#include "core/vec.h"
+#include "scene/solver_run.h"
 
 #include <memory>
 #include <span>
@@ -30,23 +28,18 @@ struct Momentum
    Vec3 angular = Vec3::Zero(); // kg m2/s about the origin
 };
 
-/// Pose of every cell for drawing: 3 doubles position (m) and 4 quaternion (w x y z, turn since rest) each.
-struct Frame
-{
-   double time = 0;
-   std::vector<double> position, rotation;
-};
-
 /// One thread at a time.
 class Simulation
 {
 public:
-   /// `values` override the set-up's solver values (integrator, precision, beam, ...).
+   /// `values` override the set-up's solver values (integrator, precision, beam, ...). The scene is built for
+   /// Analysis::dynamics.
    static Result<std::unique_ptr<Simulation>> start(std::shared_ptr<const Catalogue> catalogue,
                                                     std::unique_ptr<Scene> scene, const Setup &setup,
                                                     const Values &values, const Job &job);
    ~Simulation();
 
+   const SolverRun &run() const;
    const Scene &scene() const;
    double time() const; // s
    std::int64_t steps() const;
@@ -64,7 +57,7 @@ public:
    Result<Momentum> momentum(const Job &job) const;
    Result<Frame> frame(const Job &job) const;
    /// One named channel of one cell: x y z (displacement, m), vx vy vz, rx ry rz (rotation vector, rad),
-   /// strain.
+   /// strain, fx fy fz mx my mz (what its supports supply, where the solver tells).
    Result<double> probe(std::int64_t cell, const std::string &channel, const Job &job) const;
    /// All rows of one of the solver's own outputs ("velocity", "strain", ...), stride numbers per cell.
    Result<std::vector<double>> output(const std::string &name, const Job &job) const;

@@ -52,12 +52,7 @@ ordered_json rowJson(const AccuracyRow &row)
 
 std::string rowName(const AccuracyRow &row)
 {
-   std::string name = row.setting;
-   if (row.analysis != "dynamics")
-      name = row.analysis;
-   if (row.resolution > 1)
-      name += fmt::format(" {}x", row.resolution);
-   return name;
+   return row.resolution > 1 ? fmt::format("{} {}x", row.setting, row.resolution) : row.setting;
 }
 
 std::string percent(double relative)
@@ -117,7 +112,9 @@ ordered_json accuracyJson(const AccuracyStudy &study)
                         {"own_error", orNull(reference.ownError)},
                         {"order", orNull(reference.order)},
                         {"asymptotic", reference.asymptotic},
+                        {"disagreement", orNull(reference.disagreement)},
                         {"doubt", reference.doubt}};
+   json["sensitivity"] = orNull(study.sensitivity);
    const auto row = [&](int k) {
       return k < 0 ? ordered_json() : rowJson(study.rows[static_cast<std::size_t>(k)]);
    };

@@ -1,11 +1,11 @@
-// The runs behind an accuracy study: which are made, in what order, within which time, and what each errs by.
+// The runs behind an accuracy study: which are made, in what order, within which time.
 #pragma once
 
 #include "study/accuracy_probe.h"
 #include "study/accuracy_study.h"
+#include "study/still_trial.h"
 
 #include <chrono>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,63 +19,73 @@ struct AccuracyPlan
    double until = 0; // s
 };
 
-/// One study's runs, in three steps: planRows(), runAll(), judged().
+/// A scene as it is or cut finer, and modelled as it is or otherwise.
+struct SubjectVariant
+{
+   Subject subject;
+   std::string model; // "" = as it is
+};
+
+struct AccuracyRun
+{
+   AccuracyRow row;
+   std::size_t ladder = 0;
+   std::int64_t perSample = 1;  // steps per sample
+   std::optional<double> value; // the quantity's, where it has a single one
+   std::optional<TrialRun> run; // of a motion
+   std::vector<double> seconds; // one for each time it was run
+   bool done() const { return !seconds.empty(); }
+};
+
+/// A setting: one run where nothing moves, else runs at several step lengths.
+struct AccuracyLadder
+{
+   std::size_t variant = 0;
+   Values values;
+   std::string setting;
+   Analysis analysis = Analysis::dynamics;
+   bool own = false;              // its model is the scene's own, so that it may serve as reference
+   double limit = 0;              // s, stable step; 0 = none
+   std::vector<std::size_t> rows; // coarse to fine
+   Convergence convergence;       // of the three finest
+};
+
+/// All runs of one study: plan(), then runAll().
 class AccuracyRuns
 {
 public:
    AccuracyRuns(Subject subject, AccuracyPlan plan);
 
    /// Errors: a resolution that the scene cannot have; the solver refuses the scene.
-   Status planRows(const Job &job);
-   /// Runs every row once, then again for timing as long as the budget lasts. Errors: cancelled; nothing
+   Status plan(const Job &job);
+   /// Runs everything once, then again for timing as long as the budget lasts. Errors: cancelled; nothing
    /// could be run.
    Status runAll(const Job &job);
-   /// Errors against the reference, and everything but the front.
-   AccuracyStudy judged();
+
+   const AccuracyPlan &request() const { return m_plan; }
+   const std::vector<SubjectVariant> &variants() const { return m_variants; }
+   std::vector<AccuracyLadder> &ladders() { return m_ladders; }
+   std::vector<AccuracyRun> &runs() { return m_runs; }
+   const std::vector<std::string> &notes() const { return m_notes; }
+   double spent() const; // s since the plan was made
+   /// The value a history gives for the quantity.
+   std::optional<double> valueOf(const History &history) const;
 
 private:
-   /// A setting at several step lengths.
-   struct Ladder
-   {
-      std::size_t resolution = 0; // into m_subjects
-      Values values;
-      std::string setting;
-      bool reference = false;        // its model is the scene's own, so that it may serve as reference
-      double limit = 0;              // s, stable step; 0 = none
-      std::int64_t perSample = 1;    // steps per sample at the coarsest
-      std::vector<std::size_t> rows; // into m_rows, coarse to fine
-      Convergence convergence;       // of the three finest
-   };
-   struct Row
-   {
-      AccuracyRow row;
-      std::size_t ladder = 0;
-      std::int64_t perSample = 1;
-      std::optional<TrialRun> run;
-      std::vector<double> seconds;
-   };
+   Status addVariants(const Job &job);
+   void planStill(std::size_t variant);
+   Status planMotion(std::size_t variant, const Job &job);
+   void addSteps();
+   Status run(AccuracyRun &one, const Job &job);
+   double predictedSeconds(const AccuracyRun &one) const;
+   const SubjectVariant &variantOf(const AccuracyLadder &ladder) const { return m_variants[ladder.variant]; }
 
-   void addLadder(Ladder ladder);
-   Status runRow(Row &row, const Job &job);
-   double predictedSeconds(const Row &row) const;
-   double spent() const;
-   void judgeLadders();
-   std::optional<double> valueOf(const History &history) const;
-   Convergence convergenceOfRows(const Row &a, const Row &b, const Row &c) const;
-   /// The ladder whose finest run is surest, -1 when none converges.
-   int surestLadder() const;
-   AccuracyReference findReference();
-   std::optional<double> errorOf(const Row &row) const;
-
-   std::vector<Subject> m_subjects; // by resolution
+   std::vector<SubjectVariant> m_variants;
    AccuracyPlan m_plan;
    std::vector<Choice> m_choices;
-   std::vector<Ladder> m_ladders;
-   std::vector<Row> m_rows;
+   std::vector<AccuracyLadder> m_ladders;
+   std::vector<AccuracyRun> m_runs;
    std::int64_t m_samples = 1;
-   std::optional<double> m_referenceValue; // a single one
-   std::optional<History> m_referenceHistory;
-   double m_scale = 0;
    std::vector<std::string> m_notes;
    std::chrono::steady_clock::time_point m_start;
 };

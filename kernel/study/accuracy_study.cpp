@@ -1,9 +1,9 @@
 #include "study/accuracy_study.h"
 
-#include "study/accuracy_runs.h"
+#include "study/accuracy_judge.h"
 #include "study/motion_time.h"
 
-#include <algorithm>
+#include <fmt/format.h>
 
 namespace diatom {
 
@@ -48,25 +48,6 @@ Result<AccuracyPlan> planOf(const Subject &subject, const AccuracyRequest &reque
    return plan;
 }
 
-void markFront(AccuracyStudy &study)
-{
-   std::vector<int> order;
-   for (std::size_t k = 0; k < study.rows.size(); ++k)
-      if (study.rows[k].error)
-         order.push_back(static_cast<int>(k));
-   const auto at = [&](int k) -> AccuracyRow & { return study.rows[static_cast<std::size_t>(k)]; };
-   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return at(a).seconds < at(b).seconds; });
-   double best = std::numeric_limits<double>::infinity();
-   for (const int k : order) {
-      if (study.cheapest < 0 && *at(k).error <= study.tolerance)
-         study.cheapest = k;
-      if (*at(k).error >= best)
-         continue;
-      best = *at(k).error;
-      at(k).onFront = true;
-   }
-}
-
 } // namespace
 
 std::optional<double> AccuracyStudy::gain() const
@@ -89,13 +70,23 @@ Result<AccuracyStudy> studyAccuracy(const std::shared_ptr<const Catalogue> &cata
    if (!plan)
       return plan.error();
    AccuracyRuns runs(subject, *std::move(plan));
-   if (const Status planned = runs.planRows(job); !planned)
+   if (const Status planned = runs.plan(job); !planned)
       return planned.error();
    if (const Status ran = runs.runAll(job); !ran)
       return ran.error();
-   AccuracyStudy study = runs.judged();
+   AccuracyStudy study = judgeRuns(runs);
    study.scene = design.name;
-   markFront(study);
+   if (!isStill(study.quantity)) {
+      const auto sensitivity = sensitivityOf(subject, runs.request(), job);
+      if (!sensitivity)
+         return sensitivity.error();
+      study.sensitivity = *sensitivity;
+      if (*sensitivity > kChaotic)
+         study.notes.push_back(fmt::format(
+             "chaos: a change of density by one part in 10^9 changes the result by {:.2g} parts in 10^9, so "
+             "that no setting can be more accurate than what the scene is known to",
+             *sensitivity));
+   }
    return study;
 }
 

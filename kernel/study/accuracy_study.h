@@ -22,6 +22,7 @@ struct AccuracyRequest
    double budget = 60;              // s of wall time, roughly; what does not fit is left out and told
    int repeats = 3;                 // timings per row, of which the median counts
    std::vector<int> resolutions{1}; // cells along an edge that each cell becomes
+   std::vector<CellModel> models;   // to try beside the scene's own, where nothing moves
 };
 
 /// Answers that rows are held against.
@@ -33,13 +34,16 @@ struct AccuracyReference
    std::optional<double> ownError; // relative, of a converged run: by Richardson
    std::optional<double> order;    // observed
    bool asymptotic = false;        // the runs that it comes from do converge
-   std::string doubt;              // why not
+   /// Relative, of a run that others do not converge to: what the finest runs differ by. Errors below it mean
+   /// nothing.
+   std::optional<double> disagreement;
+   std::string doubt; // why not
 };
 
 struct AccuracyRow
 {
-   std::string analysis; // "dynamics", "statics"
-   std::string setting;  // settingText()
+   std::string analysis; // "dynamics", "statics", "modes"
+   std::string setting;  // for people
    Values values;
    int resolution = 1;
    double fraction = 0; // of the stable step; 0 where there is none
@@ -62,15 +66,22 @@ struct AccuracyStudy
    AccuracyReference reference;
    std::vector<AccuracyRow> rows;
    int cheapest = -1; // row within the tolerance in the least time; -1 when there is none
-   /// What a careful user without a study would take: the solver's own integrator, double precision and a
-   /// tenth of the stable step.
+   /// What a careful user without a study would take: the finest resolution, the scene's own integrator and
+   /// precision, and a ninth of the stable step. Where nothing moves at the end and cells are cut, the
+   /// balance of forces at the finest resolution.
    int careful = -1;
+   /// How much more the result changes than what a scene is made of, of which one part in 10^9 was changed;
+   /// nothing where it was not tried.
+   std::optional<double> sensitivity;
    double seconds = 0;             // the study took
    std::vector<std::string> notes; // what was left out, and why
 
    /// How many times faster the cheapest row is than the careful one.
    std::optional<double> gain() const;
 };
+
+/// Sensitivity from which a scene is called chaotic: an error of single precision, 1e-7, becomes one of 1e-3.
+inline constexpr double kChaotic = 1e4;
 
 /// Errors: nothing moves; the quantity's cell missing; the scene cannot be run at all; cancelled.
 Result<AccuracyStudy> studyAccuracy(const std::shared_ptr<const Catalogue> &catalogue, const Design &design,

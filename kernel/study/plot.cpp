@@ -292,7 +292,7 @@ bool hasDevice(const std::string &name)
    std::array<const char *, kMost> titles{}, names{};
    const char **title = titles.data(), **device = names.data();
    int count = kMost;
-   plgFileDevs(&title, &device, &count);
+   plgDevs(&title, &device, &count);
    return std::any_of(names.begin(), names.begin() + std::clamp(count, 0, kMost),
                       [&](const char *one) { return one && name == one; });
 }

@@ -1,9 +1,11 @@
 #include "study/refine.h"
 
 #include "scene/cell_list.h"
-#include "scene/problems.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 
 namespace diatom {
 
@@ -21,6 +23,19 @@ Status checkRefinable(const Hierarchy &hierarchy, const Setup &setup)
    if (!setup.sources.empty())
       return Error{ErrorCode::unsupported,
                    "a wired design cannot be refined: its parts would touch differently"};
+   if (std::any_of(setup.drives.begin(), setup.drives.end(),
+                   [](const Drive &drive) { return drive.freedom >= 3; }))
+      return Error{
+          ErrorCode::unsupported,
+          "a design with driven turns cannot be refined: a cell's parts would each turn by themselves"};
+   if (std::any_of(setup.starts.begin(), setup.starts.end(), [](const Start &start) {
+          return !start.about &&
+                 (start.turn != std::array<double, 3>{} || start.spin != std::array<double, 3>{});
+       }))
+      return Error{
+          ErrorCode::unsupported,
+          "a design whose cells start turned or spinning about themselves cannot be refined; give the "
+          "point that they turn about"};
    const auto counts = hierarchy.countByMaterial();
    for (std::size_t m = 1; m < counts.size() && m <= model.materials->size(); ++m)
       if (counts[m] > 0 && (*model.materials)[m - 1].bonds)
@@ -32,38 +47,42 @@ Status checkRefinable(const Hierarchy &hierarchy, const Setup &setup)
    return {};
 }
 
-template<typename Visit>
-void eachPart(Index cell, int times, const Visit &visit)
+/// The same cells, cut: one cell becomes a box of them.
+Where refined(const Where &where, int times)
 {
-   const Index first = refinedIndex(cell, times);
-   for (std::int32_t x = 0; x < times; ++x)
-      for (std::int32_t y = 0; y < times; ++y)
-         for (std::int32_t z = 0; z < times; ++z)
-            visit(first + Index{x, y, z});
+   if (const auto *cell = std::get_if<Index>(&where)) {
+      const Index first = refinedIndex(*cell, times);
+      return Box{first, first + Index{times - 1, times - 1, times - 1}};
+   }
+   if (const auto *box = std::get_if<Box>(&where))
+      return Box{refinedIndex(box->min, times),
+                 refinedIndex(box->max, times) + Index{times - 1, times - 1, times - 1}};
+   return where;
 }
 
-Setup refinedSetup(const Setup &setup, int times, double pitchZ)
+Setup refinedSetup(const Setup &setup, int times, const std::array<double, 3> &shift)
 {
    Setup fine = setup;
    const double parts = static_cast<double>(times) * times * times;
-   fine.supports.clear();
-   fine.loads.clear();
-   for (const Support &support : setup.supports)
-      eachPart(support.cell, times, [&](Index part) { fine.supports.push_back({part, support.fixed}); });
-   std::sort(fine.supports.begin(), fine.supports.end(),
-             [](const Support &a, const Support &b) { return a.cell < b.cell; });
-   for (const Load &load : setup.loads)
-      eachPart(load.cell, times, [&](Index part) {
-         Load share{part, load.force, load.moment};
-         for (std::size_t k = 0; k < 3; ++k) {
-            share.force[k] /= parts;
-            share.moment[k] /= parts;
-         }
-         fine.loads.push_back(share);
-      });
+   for (Support &support : fine.supports)
+      support.where = refined(support.where, times);
+   for (Drive &drive : fine.drives)
+      drive.where = refined(drive.where, times);
+   for (Load &load : fine.loads) {
+      load.where = refined(load.where, times);
+      for (std::size_t k = 0; k < 3; ++k) {
+         load.force[k] /= parts;
+         load.moment[k] /= parts;
+      }
+   }
+   for (Start &start : fine.starts) {
+      start.where = refined(start.where, times);
+      for (std::size_t k = 0; start.about && k < 3; ++k)
+         (*start.about)[k] += shift[k];
+   }
    fine.ground.stiffness /= static_cast<double>(times) * times;
    fine.ground.damping /= static_cast<double>(times) * times;
-   fine.ground.height += pitchZ * (times - 1) / (2.0 * times);
+   fine.ground.height += shift[2];
    fine.step = 0;
    return fine;
 }
@@ -85,7 +104,9 @@ Result<RefinedScene> refineScene(const std::shared_ptr<const Hierarchy> &hierarc
       return cells.error();
    Model model;
    model.lattice = hierarchy->model().lattice;
-   const double pitchZ = model.lattice.pitch * model.lattice.aspect[2];
+   std::array<double, 3> shift{};
+   for (std::size_t k = 0; k < 3; ++k)
+      shift[k] = model.lattice.pitch * model.lattice.aspect[k] * (times - 1) / (2.0 * times);
    model.lattice.pitch /= times;
    model.materials = hierarchy->model().materials;
    for (std::int64_t i = 0; i < cells->count(); ++i) {
@@ -97,7 +118,7 @@ Result<RefinedScene> refineScene(const std::shared_ptr<const Hierarchy> &hierarc
    if (!lattice)
       return lattice.error();
    return RefinedScene{std::make_shared<const Hierarchy>(*lattice, std::move(model)),
-                       refinedSetup(setup, times, pitchZ)};
+                       refinedSetup(setup, times, shift)};
 }
 
 } // namespace diatom

@@ -1,6 +1,6 @@
 #include "study/step_limit.h"
 
-#include "scene/problems.h"
+#include "scene/where.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // Every plugin exports exactly one symbol, so that two plugins can never see each other's.
+#include "support/process.h"
 #include "support/support.h"
 
-#include <QProcess>
 #include <QStandardPaths>
 
 using namespace diatom;
@@ -19,13 +19,11 @@ private slots:
       for (const auto &entry : fs::recursive_directory_iterator(test::binaryDir() / "plugins")) {
          if (entry.path().extension() != ".so")
             continue;
-         QProcess nm;
-         nm.start("nm",
-                  {"-D", "--defined-only", "--format=posix", QString::fromStdString(entry.path().string())});
-         QVERIFY(nm.waitForFinished());
+         const test::Outcome nm = test::run(
+             "nm", {"-D", "--defined-only", "--format=posix", QString::fromStdString(entry.path().string())});
+         QCOMPARE(nm.exit, 0);
          QStringList symbols;
-         for (const QString &line :
-              QString::fromUtf8(nm.readAllStandardOutput()).split('\n', Qt::SkipEmptyParts))
+         for (const QString &line : QString::fromUtf8(nm.out).split('\n', Qt::SkipEmptyParts))
             symbols << line.section(' ', 0, 0);
          QCOMPARE(symbols, QStringList{"diatom_module_v1"});
          ++plugins;

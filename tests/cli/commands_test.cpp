@@ -1,36 +1,27 @@
 // The command line as a user calls it: what each command prints and writes, and how it fails.
 #include "core/file.h"
+#include "support/process.h"
 #include "support/support.h"
 
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
-#include <QProcess>
 
 using namespace diatom;
 namespace fs = std::filesystem;
 
 namespace {
 
-struct Outcome
+struct Outcome : test::Outcome
 {
-   int exit = -1;
-   QByteArray out, err;
    QJsonDocument json() const { return QJsonDocument::fromJson(out); }
    QJsonObject object() const { return json().object(); }
 };
 
 Outcome diatomRuns(const QStringList &arguments, const QByteArray &input = {})
 {
-   QProcess process;
-   process.start(QString::fromStdString((test::binaryDir() / "bin" / "diatom").string()), arguments);
-   if (!input.isEmpty())
-      process.write(input);
-   process.closeWriteChannel();
-   if (!process.waitForFinished(120000))
-      return {};
-   return {process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1,
-           process.readAllStandardOutput(), process.readAllStandardError()};
+   return {
+       test::run(QString::fromStdString((test::binaryDir() / "bin" / "diatom").string()), arguments, input)};
 }
 
 QString sample(const char *name) { return QString::fromStdString((test::samplesDir() / name).string()); }

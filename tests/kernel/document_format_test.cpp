@@ -2,6 +2,7 @@
 // file.
 #include "document/files.h"
 #include "document/json_text.h"
+#include "tests/kernel/document_designs.h"
 #include "tests/support/support.h"
 
 #include "core/file.h"
@@ -10,70 +11,11 @@
 #include <random>
 
 using namespace diatom;
+using test::boundary;
+using test::everything;
+using test::material;
 
 namespace {
-
-Material material(const char *id, ElectricalRole role = ElectricalRole::insulator)
-{
-   Material m;
-   m.id = id;
-   m.name = std::string("Name of ") + id;
-   m.role = role;
-   return m;
-}
-
-/// A design with a value off its default in every field that a document holds.
-Design everything()
-{
-   Design d;
-   d.name = "all \"of\" it, \xc3\xa9";
-   d.model.lattice = {"org.example.lattice.unheard_of",
-                      {{"height", 1.28}, {"kind", std::string("tall")}},
-                      2.5e-4,
-                      {1, 2, 0.1}};
-   auto a = material("structural"), b = material("brass", ElectricalRole::conductor), gone = material("gone"),
-        c = material("act", ElectricalRole::actuator);
-   a.color = {1, 0xab, 0xff};
-   a.density = 1.0 / 3;
-   a.youngsModulus = 6.9e10;
-   a.poissonRatio = -0.25;
-   a.dampingRatio = 0.17;
-   a.bonds =
-       BondConstants{{1, 2, 3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-6, 2e-6, 3e-6}, {4e-6, 5e-6, 6e-6}};
-   b.ports = 0x30;
-   c.actuation = {Actuation::Mode::shear, 2, 0.6, true};
-   for (auto &m : {a, gone, b, c})
-      (void)d.model.setMaterial(m);
-   auto palette = *d.model.materials;
-   palette[1] = Material();
-   palette[1].id.clear(); // removed: keeps its place
-   d.model.materials = std::make_shared<const std::vector<Material>>(palette);
-   Definition unit{"unit", "Unit", {9, 8, 7}, {}};
-   unit.body.cells.fill({{0, 0, 0}, {3, 1, 1}}, {1, 0, 0});
-   for (int k = 0; k < 4; ++k)
-      unit.body.cells.set({5, k, 0}, {3, 2, static_cast<std::uint8_t>((k > 0 ? 1 : 0) | (k < 3 ? 2 : 0))});
-   const auto unitId = *d.model.setDefinition(unit);
-   Definition pair{"pair", "Pair", {1, 1, 1}, {}};
-   pair.body.instances.insert({unitId, {0, 0, 0}, 0});
-   pair.body.instances.insert({unitId, {-9, 4, 2}, 5});
-   const auto pairId = *d.model.setDefinition(pair);
-   d.model.root.instances.insert({pairId, {100, -100, 1000000}, 0});
-   d.model.root.cells.set({kIndexLimit, -kIndexLimit, 0}, {4, 23, 0});
-   d.model.root.cells.fill({{-5, -5, -5}, {5, 5, 5}}, {1, 0, 0});
-   d.model.root.cells.set({0, 0, 0}, {});
-   d.setup.gravity = {0.1, -0.0, -9.8};
-   d.setup.supports = {{{-5, -5, -5}, 0x3f}, {{1, 2, 3}, 0x05}};
-   d.setup.loads = {{{5, 5, 5}, {1e-3, 0, 0.1}, {0, 1e-9, 0}}};
-   d.setup.sources = {{{1, 1, 1}, Waveform::saw, 12.5, 0.33, 0.25, true, 3}};
-   d.setup.ground = {true, -5e-4, 999, 0.01, 0.7};
-   d.setup.drag = 3;
-   d.setup.step = 1e-5;
-   d.setup.solver = "org.example.solver.own";
-   d.setup.solverValues = {{"theory", std::string("euler")}};
-   d.setup.effects = {{"damping", false}, {"gravity", true}};
-   d.assembly = {"org.example.parts.p", {{"n", 2.0}}, "org.example.machine.m", {{"feed", 0.01}}};
-   return d;
-}
 
 Result<Opened> read(const std::string &bytes) { return readDesign(bytes, "test.diatom", Job()); }
 
@@ -91,8 +33,9 @@ class document_format_test : public QObject
 private slots:
    void everyFieldSurvivesBothForms()
    {
-      const auto design = everything();
-      for (const bool packed : {false, true}) {
+      for (const auto &[design, packed] : {std::pair{everything(), false}, std::pair{everything(), true},
+                                           std::pair{boundary(), false}, std::pair{boundary(), true}})
+      {
          const auto bytes = writeDesign(design, packed, Job());
          DIATOM_VERIFY_OK(bytes);
          const auto opened = read(*bytes);
@@ -108,6 +51,28 @@ private slots:
          DIATOM_VERIFY_OK(again);
          QVERIFY(*again == *bytes);
       }
+   }
+
+   void everyFieldOfTheSetUpTellsInTheHash()
+   {
+      const Hash whole = boundary().hash();
+      const auto differs = [&](auto change) {
+         Design changed = boundary();
+         change(changed);
+         return !(changed.hash() == whole);
+      };
+      QVERIFY(differs([](Design &d) { d.setup.supports[2].where = Index{2, 0, 0}; }));
+      QVERIFY(differs([](Design &d) { d.setup.drives[0].curve[1].value *= 1 + 1e-15; }));
+      QVERIFY(differs([](Design &d) { d.setup.drives[1].freedom = 4; }));
+      QVERIFY(differs([](Design &d) { d.setup.starts[1].about.reset(); }));
+      QVERIFY(differs([](Design &d) { d.setup.starts[0].displacement[0] = 0; }));
+      for (const auto change : {+[](Material &m) { m.cellModel = CellModel::bond; },
+                                +[](Material &m) { m.poissonCoupling = true; }})
+         QVERIFY(differs([&](Design &d) {
+            auto palette = *d.model.materials;
+            change(palette[0]);
+            d.model.materials = std::make_shared<const std::vector<Material>>(palette);
+         }));
    }
 
    void cellsAreWrittenAlikeHoweverTheyCameAbout()
@@ -229,8 +194,33 @@ private slots:
           small(
               R"(, "definitions": [{"id":"u","instances":[["v",[0,0,0]]]},{"id":"v","instances":[["u",[0,0,0]]]}])"),
           "contains itself");
-      row("support twice", small(R"(, "simulation": {"supports": [{"cell":[0,0,0]},{"cell":[0,0,0]}]})"),
-          "two supports");
+      row("nowhere", small(R"(, "simulation": {"supports": [{"fixed": ["x"]}]})"),
+          "/simulation/supports/0/cell");
+      row("in two ways", small(R"(, "simulation": {"loads": [{"cell": [0,0,0], "material": "a"}]})"),
+          "/simulation/loads/0: is on more than one of cell, box and material");
+      row("box the wrong way round", small(R"(, "simulation": {"supports": [{"box": [[1,0,0],[0,5,5]]}]})"),
+          "/simulation/supports/0/box");
+      row("box of one corner", small(R"(, "simulation": {"supports": [{"box": [[1,0,0]]}]})"), "two corners");
+      row("on an unknown material", small(R"(, "simulation": {"starts": [{"material": "zinc"}]})"),
+          "/simulation/starts/0/material: there is no material \"zinc\"");
+      row("freedom of no name", small(R"(, "simulation": {"drives": [{"cell": [0,0,0], "freedom": "w"}]})"),
+          "/simulation/drives/0/freedom");
+      row("no curve", small(R"(, "simulation": {"drives": [{"cell": [0,0,0], "freedom": "x"}]})"),
+          "/simulation/drives/0/curve_s_m");
+      row("curve of another kind",
+          small(
+              R"(, "simulation": {"drives": [{"cell": [0,0,0], "freedom": "rx", "curve_s_rad": [[0,0]], "curve_s_m": [[0,0]]}]})"),
+          "does not fit the freedom rx");
+      row("curve without points",
+          small(R"(, "simulation": {"drives": [{"cell": [0,0,0], "freedom": "x", "curve_s_m": []}]})"),
+          "has no points");
+      row("curve back in time",
+          small(
+              R"(, "simulation": {"drives": [{"cell": [0,0,0], "freedom": "x", "curve_s_m": [[0,0],[1,2],[0.5,3]]}]})"),
+          "0.5 s follows 1 s");
+      row("cell model of no name",
+          R"({"diatom":1,"lattice":{"id":"l"},"materials":[{"id":"a","cell_model":"jelly"}]})",
+          "/materials/0/cell_model");
       row("packed elsewhere", small(R"(, "assembly": {"cells": {"packed": "cells/assembly"}})"),
           "not in the file");
       auto packed = *writeDesign(everything(), true, Job());
@@ -303,7 +293,7 @@ private slots:
          DIATOM_VERIFY_OK(reread);
          QVERIFY(reread->design == opened->design);
       }
-      QVERIFY(files >= 2);
+      QVERIFY(files >= 3);
    }
 
    /// DIATOM_WRITE_FIXTURES=1 writes the fixtures anew, which only a new version of the format may do.
@@ -311,14 +301,18 @@ private slots:
    {
       const auto folder = test::sourceDir() / "tests/files/v1";
       if (std::getenv("DIATOM_WRITE_FIXTURES"))
-         for (const char *name : {"everything.diatom", "everything_packed.diatom"}) {
+         for (const auto &[name, design] :
+              {std::pair{"everything.diatom", everything()},
+               std::pair{"everything_packed.diatom", everything()}, std::pair{"boundary.diatom", boundary()}})
+         {
             const bool packed = std::string_view(name).find("packed") != std::string_view::npos;
-            DIATOM_VERIFY_OK(writeFileAtomic(folder / name, *writeDesign(everything(), packed, Job())));
+            DIATOM_VERIFY_OK(writeFileAtomic(folder / name, *writeDesign(design, packed, Job())));
             DIATOM_VERIFY_OK(
-                writeFileAtomic(folder / (std::string(name) + ".hash"), everything().hash().text() + "\n"));
+                writeFileAtomic(folder / (std::string(name) + ".hash"), design.hash().text() + "\n"));
          }
       // The packed one is compared by content elsewhere: another zstd may compress otherwise.
       QVERIFY(*writeDesign(everything(), false, Job()) == *readFile(folder / "everything.diatom"));
+      QVERIFY(*writeDesign(boundary(), false, Job()) == *readFile(folder / "boundary.diatom"));
    }
 };
 

@@ -4,11 +4,10 @@
 #include "io/stl.h"
 #include "io/stl_file.h"
 #include "support/mesh.h"
+#include "support/process.h"
 #include "support/scenes.h"
 
 #include <nlohmann/json.hpp>
-
-#include <QProcess>
 
 #include <algorithm>
 #include <bit>
@@ -99,12 +98,10 @@ void addLattices()
 /// The checker's answer; null when it cannot run.
 nlohmann::json judged(const fs::path &file)
 {
-   QProcess process;
-   process.start("python3", {QString::fromStdString((test::sharedDir() / "tools" / "stl_check").string()),
+   const test::Outcome judge =
+       test::run("python3", {QString::fromStdString((test::sharedDir() / "tools" / "stl_check").string()),
                              QString::fromStdString(file.string())});
-   if (!process.waitForFinished(120000))
-      return nullptr;
-   return nlohmann::json::parse(process.readAllStandardOutput().toStdString(), nullptr, false);
+   return nlohmann::json::parse(judge.out.toStdString(), nullptr, false);
 }
 
 } // namespace

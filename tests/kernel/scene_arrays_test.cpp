@@ -220,8 +220,8 @@ void SceneArraysTest::channelsArePresentOnlyWithTheirEffect()
    QCOMPARE(std::string(bare->view().effect[0]), std::string("rotation"));
 
    bench.setup.gravity = {0, 0, -9.8};
-   bench.setup.supports = {{{2, 0, 0}, 0x3f}, {{0, 0, 0}, 0x07}};
-   bench.setup.loads = {{{1, 0, 0}, {1, 2, 3}, {4, 5, 6}}, {{1, 0, 0}, {1, 0, 0}, {}}};
+   bench.setup.supports = {{Index{2, 0, 0}, 0x3f}, {Index{0, 0, 0}, 0x07}};
+   bench.setup.loads = {{Index{1, 0, 0}, {1, 2, 3}, {4, 5, 6}}, {Index{1, 0, 0}, {1, 0, 0}, {}}};
    bench.setup.ground = {true, -1e-3, 500, 0.2, 0.4};
    bench.setup.drag = 7;
    const auto full = sceneOf(bench);
@@ -312,11 +312,11 @@ void SceneArraysTest::aSceneThatMakesNoSenseIsRefused()
    Workbench bench;
    verifyRefused(bench, "no cells");
    bench.block("plain", {{0, 0, 0}, {9, 9, 9}});
-   const auto tooMany = Scene::build(bench.hierarchy(), bench.setup, bench.job, 999);
+   const auto tooMany = Scene::build(bench.hierarchy(), bench.setup, bench.job, Analysis::dynamics, 999);
    QVERIFY(!tooMany);
    QVERIFY2(tooMany.error().message.find("1000 cells") != std::string::npos, tooMany.error().message.c_str());
 
-   bench.setup.supports = {{{-1, 0, 0}, 0x3f}};
+   bench.setup.supports = {{Index{-1, 0, 0}, 0x3f}};
    verifyRefused(bench, "(-1, 0, 0)");
    bench.setup.supports.clear();
    bench.setup.sources.push_back({{20, 0, 0}});
@@ -339,15 +339,15 @@ void SceneArraysTest::looseBodiesAreFoundOnlyWhereTheyFall()
    const auto bodies = findBodies(bench.hierarchy(), bench.job);
    DIATOM_VERIFY_OK(bodies);
    QCOMPARE(*bodies, (Bodies{{{0, 0, 0}, {1, 0, 0}}, {{5, 0, 0}}}));
-   QVERIFY(findFloatingBodies(*bodies, bench.setup).empty());
+   QVERIFY(findFloatingBodies(bench.hierarchy(), *bodies, bench.setup).empty());
    bench.setup.gravity = {0, 0, -9.8};
-   QCOMPARE(findFloatingBodies(*bodies, bench.setup).size(), std::size_t(2));
-   bench.setup.supports = {{{1, 0, 0}, 0x3f}};
-   const auto loose = findFloatingBodies(*bodies, bench.setup);
+   QCOMPARE(findFloatingBodies(bench.hierarchy(), *bodies, bench.setup).size(), std::size_t(2));
+   bench.setup.supports = {{Index{1, 0, 0}, 0x3f}};
+   const auto loose = findFloatingBodies(bench.hierarchy(), *bodies, bench.setup);
    QCOMPARE(loose.size(), std::size_t(1));
    QCOMPARE(loose[0].cells, (std::vector<Index>{{5, 0, 0}}));
    bench.setup.ground.present = true;
-   QVERIFY(findFloatingBodies(*bodies, bench.setup).empty());
+   QVERIFY(findFloatingBodies(bench.hierarchy(), *bodies, bench.setup).empty());
 }
 
 QTEST_APPLESS_MAIN(SceneArraysTest)

@@ -40,7 +40,7 @@ Workbench cantilever()
    bench.add(fibre);
    for (std::int32_t y = 0; y < 14; ++y)
       bench.put("fibre", {{0, y, 0}});
-   bench.setup.supports = {{{0, 0, 0}, 0x3f}};
+   bench.setup.supports = {{Index{0, 0, 0}, 0x3f}};
    bench.setup.gravity = {0, 0, -9.8};
    return bench;
 }
@@ -149,7 +149,7 @@ void SceneSimulationTest::aFreeBodyKeepsItsMomentum()
    Workbench bench = cantilever();
    bench.setup.supports.clear();
    bench.setup.gravity = {0, 0, 0};
-   bench.setup.loads = {{{0, 13, 0}, {1e-5, 0, 2e-5}, {}}};
+   bench.setup.loads = {{Index{0, 13, 0}, {1e-5, 0, 2e-5}, {}}};
    const auto simulation = start(bench);
    DIATOM_VERIFY_OK(simulation);
    DIATOM_VERIFY_OK((*simulation)->advance(0.05, bench.job));
@@ -278,8 +278,15 @@ void SceneSimulationTest::unknownChannelsAreRefused()
    DIATOM_VERIFY_OK(simulation);
    QVERIFY(!(*simulation)->probe(0, "temperature", bench.job));
    QVERIFY(!(*simulation)->probe(-1, "x", bench.job));
-   for (const auto &[channel, unit] : Simulation::probeChannels())
-      DIATOM_VERIFY_OK((*simulation)->probe(3, channel, bench.job));
+   for (const auto &[channel, unit] : Simulation::probeChannels()) {
+      const auto value = (*simulation)->probe(3, channel, bench.job);
+      // What supports supply is told by solvers that have the output "reaction"; others say so.
+      if (!value && !(*simulation)->run().hasOutput("reaction"))
+         QVERIFY2(value.error().message.find("has no output 'reaction'") != std::string::npos,
+                  value.error().message.c_str());
+      else
+         DIATOM_VERIFY_OK(value);
+   }
 }
 
 QTEST_APPLESS_MAIN(SceneSimulationTest)

@@ -22,7 +22,7 @@ Subject cantilever()
    bench.add(fibre);
    for (std::int32_t y = 0; y < 12; ++y)
       bench.put("fibre", {{0, y, 0}});
-   bench.setup.supports = {{{0, 0, 0}, 0x3f}};
+   bench.setup.supports = {{Index{0, 0, 0}, 0x3f}};
    bench.setup.gravity = {0, 0, -9.8};
    return {test::catalogue(), std::make_shared<const Hierarchy>(bench.hierarchy()), bench.setup, 1};
 }

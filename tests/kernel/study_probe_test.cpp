@@ -23,7 +23,7 @@ Workbench cantilever()
    bench.add(fibre);
    for (std::int32_t y = 0; y < 12; ++y)
       bench.put("fibre", {{0, y, 0}});
-   bench.setup.supports = {{{0, 0, 0}, 0x3f}};
+   bench.setup.supports = {{Index{0, 0, 0}, 0x3f}};
    bench.setup.gravity = {0, 0, -9.8};
    return bench;
 }

@@ -5,10 +5,9 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "kernel/assembly_scene.h"
+#include "support/process.h"
 
 #include <nlohmann/json.hpp>
-
-#include <QProcess>
 
 #include <clocale>
 #include <locale>
@@ -73,13 +72,11 @@ nlohmann::json interpret(const std::string &text, int &exitCode, QByteArray &why
    const std::string file = (std::filesystem::path(folder.path().toStdString()) / "program.ngc").string();
    if (!writeFileAtomic(file, text).ok())
       return nullptr;
-   QProcess process;
-   process.start(QString::fromStdString((sharedDir() / "tools" / "gcode_canon").string()),
-                 {"--strict", "--max-events", "100000", QString::fromStdString(file)});
-   process.waitForFinished(120000);
-   exitCode = process.exitStatus() == QProcess::NormalExit ? process.exitCode() : -1;
-   why = process.readAllStandardError();
-   return nlohmann::json::parse(process.readAllStandardOutput().toStdString(), nullptr, false);
+   const Outcome canon = run(QString::fromStdString((sharedDir() / "tools" / "gcode_canon").string()),
+                             {"--strict", "--max-events", "100000", QString::fromStdString(file)});
+   exitCode = canon.exit;
+   why = canon.err;
+   return nlohmann::json::parse(canon.out.toStdString(), nullptr, false);
 }
 
 /// A numpunct as in German: 1.234,5.
