@@ -48,7 +48,7 @@ public:
       open();
       for (const auto stage : {&Pipeline::simulate, &Pipeline::exportStl, &Pipeline::make, &Pipeline::draw}) {
          const auto start = std::chrono::steady_clock::now();
-         if (const Status done = (this->*stage)(); !done)
+         if (Status done = (this->*stage)(); !done)
             return done;
          m_report[m_stage]["wall_s"] =
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -83,7 +83,7 @@ private:
       const auto rest = (*simulation)->frame(m_context.job());
       if (!rest)
          return rest.error();
-      if (const Status done = (*simulation)->advance(m_options.until, m_context.job()); !done)
+      if (Status done = (*simulation)->advance(m_options.until, m_context.job()); !done)
          return done;
       const auto energy = (*simulation)->energy(m_context.job());
       if (!energy)

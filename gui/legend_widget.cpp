@@ -8,7 +8,7 @@ LegendWidget::LegendWidget(QWidget *parent) : QWidget(parent)
 {
    setObjectName(QStringLiteral("legend"));
    setAttribute(Qt::WA_TransparentForMouseEvents);
-   resize(sizeHint());
+   resize(LegendWidget::sizeHint());
    hide();
 }
 

@@ -17,7 +17,7 @@ namespace {
 /// Takes the picture once files are open and painted, then ends the program.
 void screenshotWhenReady(MainWindow &window, const QString &file)
 {
-   auto *connection = new QMetaObject::Connection;
+   auto connection = std::make_shared<QMetaObject::Connection>();
    *connection =
        QObject::connect(&window.viewport(), &Viewport::framePainted, &window, [&window, file, connection] {
           if (window.busy() || window.viewport().frameId() < 2) {

@@ -115,7 +115,7 @@ void CellPass::drawRuns(const Type &type, std::size_t number, const std::vector<
       if (from == to)
          return;
       glVertexAttribIPointer(2, 1, GL_UNSIGNED_INT, sizeof(std::uint32_t),
-                             reinterpret_cast<const void *>(sizeof(std::uint32_t) * std::size_t{from}));
+                             bufferOffset(sizeof(std::uint32_t) * std::size_t{from}));
       glDrawArraysInstanced(GL_TRIANGLE_FAN, type.first, type.corners, static_cast<GLsizei>(to - from));
       m_drawn += to - from;
    };

@@ -72,11 +72,17 @@ private:
    GLuint m_name = 0;
 };
 
+/// Where an attribute begins, as the API takes it: bytes from the start of the bound buffer.
+inline const void *bufferOffset(std::size_t bytes)
+{
+   return reinterpret_cast<const void *>(bytes); // NOLINT(performance-no-int-to-ptr)
+}
+
 /// Floats of a vertex: attribute `number`, `count` floats from byte `offset` of every `stride` bytes.
 inline void floatAttribute(GLuint number, GLint count, GLsizei stride, std::size_t offset)
 {
    glEnableVertexAttribArray(number);
-   glVertexAttribPointer(number, count, GL_FLOAT, GL_FALSE, stride, reinterpret_cast<const void *>(offset));
+   glVertexAttribPointer(number, count, GL_FLOAT, GL_FALSE, stride, bufferOffset(offset));
 }
 
 class Program

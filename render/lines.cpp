@@ -24,7 +24,8 @@ void addHatch(std::vector<Line> &lines, std::span<const Vec3> corners, double sp
       low = std::min(low, across.dot(c));
       high = std::max(high, across.dot(c));
    }
-   for (double at = low + spacing / 2; at < high; at += spacing) {
+   for (int line = 0; low + (line + 0.5) * spacing < high; ++line) {
+      const double at = low + (line + 0.5) * spacing;
       std::vector<Vec3> cut;
       for (std::size_t i = 0; i < corners.size(); ++i) {
          const Vec3 &p = corners[i], &q = corners[(i + 1) % corners.size()];

@@ -56,8 +56,8 @@ private:
    {
       const int f = placing.feeder;
       const std::int64_t columns = m_machine.feeder_columns[f], places = columns * m_machine.feeder_rows[f];
-      const std::int64_t place = placing.turn % places;
-      const Vec3 step(static_cast<double>(place % columns), static_cast<double>(place / columns), 0);
+      const std::int64_t place = placing.turn % places, row = place / columns;
+      const Vec3 step(static_cast<double>(place % columns), static_cast<double>(row), 0);
       return {Eigen::Map<const Vec3>(m_machine.feeder_position + 3 * f) + m_machine.feeder_pitch[f] * step,
               places > 1 && place == 0 && placing.turn > 0};
    }
@@ -207,7 +207,7 @@ private:
       program.parts = static_cast<std::int64_t>(m_layout.placings.size());
       program.part_feeder = m_layout.partFeeder.data();
       program.part_index = m_layout.partIndex.data();
-      const Status status = m_sink(program);
+      Status status = m_sink(program);
       m_op.clear();
       m_moved.clear();
       m_target.clear();

@@ -49,7 +49,7 @@ Status checkTurns(const Model &model, const Lattice &lattice)
 {
    const std::size_t orientations = fewestRotations(lattice);
    for (const auto &[id, definition] : model.definitions)
-      if (const Status fits = checkBody(definition->id, definition->body, lattice, orientations); !fits)
+      if (Status fits = checkBody(definition->id, definition->body, lattice, orientations); !fits)
          return fits;
    return checkBody("assembly", model.root, lattice, orientations);
 }

@@ -55,10 +55,9 @@ public:
             m_cubes[kBrick][brick->first] = cells[0];
          brick = uniform ? m_bricks.erase(brick) : std::next(brick);
       }
-      // m_cubes grows at its end while it is walked.
-      for (auto level = m_cubes.begin(); level != m_cubes.end(); ++level)
-         if (level->first < (1 << 29))
-            joinSiblings(level->second, level->first);
+      for (auto &[edge, cubes] : m_cubes) // grows at its end while it is walked
+         if (edge < (1 << 29))
+            joinSiblings(cubes, edge);
    }
 
    const std::map<std::int32_t, Cubes> &cubes() const { return m_cubes; }
@@ -93,7 +92,8 @@ private:
       for (std::int32_t z = part.min.z - corner.z; z <= part.max.z - corner.z; ++z)
          for (std::int32_t y = part.min.y - corner.y; y <= part.max.y - corner.y; ++y)
             for (std::int32_t x = part.min.x - corner.x; x <= part.max.x - corner.x; ++x)
-               (*brick)[static_cast<std::size_t>((z * kBrick + y) * kBrick + x)] = cell.packed();
+               (*brick)[(static_cast<std::size_t>(z) * kBrick + static_cast<std::size_t>(y)) * kBrick +
+                        static_cast<std::size_t>(x)] = cell.packed();
    }
 
    /// Eight equal neighbours that fill a cube of twice the size become that cube.

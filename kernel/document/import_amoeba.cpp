@@ -18,24 +18,24 @@ namespace {
 struct Known
 {
    const char *id, *other, *name; // ids of the two generations
-   std::array<std::uint8_t, 3> color;
-   double density, stiffness; // kg/m3, N/m
+   double density, stiffness;     // kg/m3, N/m
    ElectricalRole role;
+   std::array<std::uint8_t, 3> color;
 };
 
 constexpr Known kKnown[] = {
-    {"fiberGlass", "insulating", "Structural", {0xfc, 0xef, 0xb5}, 3500, 500, ElectricalRole::insulator},
-    {"flexure", "flexure", "Flexure", {0xcd, 0xa4, 0xf3}, 3500, 30, ElectricalRole::insulator},
-    {"brass", "conductive", "Structural conductor", {0x85, 0x7b, 0x64}, 8500, 500, ElectricalRole::conductor},
+    {"fiberGlass", "insulating", "Structural", 3500, 500, ElectricalRole::insulator, {0xfc, 0xef, 0xb5}},
+    {"flexure", "flexure", "Flexure", 3500, 30, ElectricalRole::insulator, {0xcd, 0xa4, 0xf3}},
+    {"brass", "conductive", "Structural conductor", 8500, 500, ElectricalRole::conductor, {0x85, 0x7b, 0x64}},
     {"flexureCond",
      "flexureCond",
      "Flexible conductor",
-     {0xb4, 0xac, 0x9c},
      3500,
      30,
-     ElectricalRole::conductor},
-    {"piezo", "actuator", "Actuator", {0xff, 0xcc, 0x00}, 6500, 200, ElectricalRole::actuator},
-    {"signal", "signal", "Signal generator", {0x0e, 0xe3, 0xb8}, 6500, 200, ElectricalRole::source},
+     ElectricalRole::conductor,
+     {0xb4, 0xac, 0x9c}},
+    {"piezo", "actuator", "Actuator", 6500, 200, ElectricalRole::actuator, {0xff, 0xcc, 0x00}},
+    {"signal", "signal", "Signal generator", 6500, 200, ElectricalRole::source, {0x0e, 0xe3, 0xb8}},
 };
 
 constexpr double kBondDamping = 0.01;  // N s/m, the program's one constant

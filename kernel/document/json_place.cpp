@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 namespace diatom {
 
@@ -47,9 +48,9 @@ std::string JsonPlace::pointer() const
    for (const JsonPlace *place = this; place->m_parent; place = place->m_parent)
       chain.push_back(place);
    std::string text;
-   for (auto place = chain.rbegin(); place != chain.rend(); ++place) {
+   for (const JsonPlace *place : std::views::reverse(chain)) {
       text += '/';
-      text += (*place)->m_key.data() ? escaped((*place)->m_key) : std::to_string((*place)->m_element);
+      text += place->m_key.data() ? escaped(place->m_key) : std::to_string(place->m_element);
    }
    return text;
 }
@@ -241,7 +242,7 @@ double JsonPlace::numberOr(std::string_view key, double fallback, double least, 
 
 std::string JsonPlace::textOr(std::string_view key, std::string fallback) const
 {
-   return has(key) ? at(key).text() : fallback;
+   return has(key) ? at(key).text() : std::move(fallback);
 }
 
 bool JsonPlace::booleanOr(std::string_view key, bool fallback) const

@@ -133,7 +133,7 @@ Index Lattice::unplace(Index origin, int rotation, Index world) const
 
 bool Lattice::placementAllowed(Index origin, int rotation) const
 {
-   return !m_turn[static_cast<std::size_t>(rotation * sites() + site(origin))].empty();
+   return !m_turn[turnsAt(rotation, site(origin))].empty();
 }
 
 int Lattice::compose(int a, int b) const
@@ -146,10 +146,9 @@ int Lattice::inverse(int rotation) const { return m_inverseOf[static_cast<std::s
 int Lattice::turnedOrientation(Index origin, Index local, int rotation, int orientation) const
 {
    const auto s = static_cast<std::size_t>(site(local));
-   auto turns = static_cast<std::size_t>(rotation * sites() + site(origin));
+   std::size_t turns = turnsAt(rotation, site(origin));
    if (m_turn[turns].empty())
-      turns =
-          static_cast<std::size_t>(rotation * sites() + m_firstAllowed[static_cast<std::size_t>(rotation)]);
+      turns = turnsAt(rotation, m_firstAllowed[static_cast<std::size_t>(rotation)]);
    const auto &compose = m_shapeCompose[static_cast<std::size_t>(m_shapeOf[s])];
    const auto count = m_shapes[static_cast<std::size_t>(m_shapeOf[s])].rotations.size();
    return compose[static_cast<std::size_t>(m_turn[turns][s]) * count + static_cast<std::size_t>(orientation)];

@@ -165,6 +165,11 @@ private:
    // Per rotation and site of the origin: for every local site the rotation number that takes the cell frame
    // there to the cell frame where it lands; empty where the placement is not allowed.
    std::vector<std::vector<int>> m_turn;
+   std::size_t turnsAt(int rotation, int site) const
+   {
+      return static_cast<std::size_t>(rotation) * static_cast<std::size_t>(sites()) +
+             static_cast<std::size_t>(site);
+   }
    std::vector<int> m_firstAllowed; // per rotation: the first site of the origin that is allowed
 
    std::vector<Index> m_supercellStep;

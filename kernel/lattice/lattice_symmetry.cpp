@@ -149,7 +149,8 @@ std::optional<std::array<std::int32_t, 9>> LatticeBuilder::indexRotation(const M
          const double whole = std::round(steps(row, column));
          if (std::abs(steps(row, column) - whole) > 1e-6 || std::abs(whole) > 4)
             return std::nullopt;
-         matrix[static_cast<std::size_t>(3 * row + column)] = static_cast<std::int32_t>(whole);
+         matrix[3 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)] =
+             static_cast<std::int32_t>(whole);
       }
    return matrix;
 }

@@ -100,7 +100,7 @@ std::int32_t takeMesh(const diatom_mesh_sink *sink, std::int64_t vertices, const
 Status PartMaker::Self::readCatalogue(const Job &job)
 {
    const diatom_catalogue *record = nullptr;
-   const Status status = instance->call("catalogue", job, [&](const diatom_call *call) {
+   Status status = instance->call("catalogue", job, [&](const diatom_call *call) {
       return table().catalogue(instance->self(), call, &record);
    });
    if (!status)

@@ -9,6 +9,7 @@
 #include "document/archive.h"
 
 #include <random>
+#include <ranges>
 
 using namespace diatom;
 using test::boundary;
@@ -96,9 +97,9 @@ private slots:
                   for (int z = box.min.z; z <= box.max.z; ++z)
                      plain[{x, y, z}] = cell;
          }
-         for (auto cell = plain.rbegin(); cell != plain.rend(); ++cell)
-            if (!cell->second.empty())
-               two.model.root.cells.set(cell->first, cell->second);
+         for (const auto &[index, cell] : std::views::reverse(plain))
+            if (!cell.empty())
+               two.model.root.cells.set(index, cell);
          for (const bool packed : {false, true}) {
             const auto a = writeDesign(one, packed, Job()), b = writeDesign(two, packed, Job());
             DIATOM_VERIFY_OK(a);

@@ -18,7 +18,7 @@ fs::path faultyFolder() { return test::binaryDir() / "tests" / "plugins" / "faul
 fs::path copyPlugin(const fs::path &root, const char *name, const std::string &from = "",
                     const std::string &to = "")
 {
-   const fs::path folder = root / name;
+   fs::path folder = root / name;
    fs::create_directories(folder);
    fs::copy(faultyFolder(), folder, fs::copy_options::recursive | fs::copy_options::overwrite_existing);
    if (!from.empty()) {

@@ -365,7 +365,8 @@ void PartsPluginTest::fineSnapVoxelsPegGoesIntoTheSocketAbove()
       return -1.0;
    };
    double narrowest = 1, widest = 0;
-   for (double z = socket.front().first + 1e-4; z < peg.back().first; z += 1e-4) {
+   for (int level = 1; socket.front().first + 1e-4 * level < peg.back().first; ++level) {
+      const double z = socket.front().first + 1e-4 * level;
       QVERIFY(at(peg, z) > 0 && at(socket, z) > 0);
       QVERIFY(at(socket, z) - at(peg, z) > 0.001); // snapped in, nothing overlaps
       narrowest = std::min(narrowest, at(socket, z));

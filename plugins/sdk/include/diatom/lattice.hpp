@@ -298,7 +298,7 @@ inline std::vector<Turn> rotations(const Shape &shape)
 #define DIATOM_LATTICE(function)                                                                             \
    static const void *diatomLatticeTable(const char *interface)                                              \
    {                                                                                                         \
-      static constexpr diatom_lattice table = ::diatom::sdk::LatticeModule<&function>::table();              \
+      static constexpr diatom_lattice table = ::diatom::sdk::LatticeModule<&(function)>::table();            \
       return std::string_view(interface) == DIATOM_LATTICE_1 ? &table : nullptr;                             \
    }                                                                                                         \
    DIATOM_MODULE(diatomLatticeTable)

@@ -166,7 +166,9 @@ struct MachineTable
 {
    static std::int32_t create(const diatom_call *call, const diatom_create *create, void **self) noexcept
    {
-      return guarded(call, [&] { *self = new MachineSelf(std::make_unique<Class>(Call(call), *create)); });
+      return guarded(call, [&] {
+         *self = std::make_unique<MachineSelf>(std::make_unique<Class>(Call(call), *create)).release();
+      });
    }
    static std::int32_t describe(void *self, const diatom_call *call,
                                 const diatom_machine_description **machine) noexcept
