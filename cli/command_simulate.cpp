@@ -1,4 +1,5 @@
 // diatom simulate: motion in time, with a record, probes and an account of the energy.
+#include "cli/accuracy_option.h"
 #include "cli/commands.h"
 #include "cli/run_options.h"
 #include "cli/scene_json.h"
@@ -21,8 +22,8 @@ constexpr double kMostRows = 1e7;
 struct Options
 {
    RunOptions run;
-   std::string integrator, step;
-   double until = 0, every = 0;
+   std::string integrator, step, accuracy;
+   double until = 0, every = 0, probeBudget = 30;
    std::optional<double> drag, rho;
    bool force = false;
 };
@@ -143,12 +144,38 @@ Result<Started> start(const Context::Input &input, const Options &options, Conte
    return started;
 }
 
+/// Settings by --accuracy; nothing where it was not asked for.
+Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::Input &input, Context &context)
+{
+   if (options.accuracy.empty())
+      return std::optional<AccuracyChoice>();
+   if (!options.step.empty() || options.force)
+      return Error{ErrorCode::usage, "--accuracy chooses the step: leave out --step and --force-step"};
+   const auto error = parseAccuracy(options.accuracy);
+   if (!error)
+      return error.error();
+   AccuracyAsked asked{*error, options.until, "", options.probeBudget, {}};
+   if (!options.run.probes.empty())
+      asked.quantity = options.run.probes.front();
+   if (!options.integrator.empty())
+      asked.fixed["integrator"] = options.integrator;
+   if (!options.run.precision.empty())
+      asked.fixed["precision"] = options.run.precision;
+   auto choice = applyAccuracy(asked, input, input.opened.design.setup, context);
+   if (!choice)
+      return choice.error();
+   return std::optional(*std::move(choice));
+}
+
 void simulate(const Options &options, Context &context)
 {
    const auto input =
        openToRun(options.run, context, [&](Design &design) { return applyOptions(options, design.setup); });
    if (!input)
       return;
+   const auto choice = choose(options, *input, context);
+   if (!choice)
+      return context.fail(choice.error());
    auto started = start(*input, options, context);
    if (!started)
       return context.fail(started.error());
@@ -174,6 +201,8 @@ void simulate(const Options &options, Context &context)
    auto object = summary(simulation, started->probes, status, context.json, calm);
    if (!object)
       return context.fail(object.error());
+   if (*choice)
+      (*object)["accuracy"] = choiceJson(**choice, simulation.wallSeconds());
    context.print(*object);
    if (!ran)
       context.fail(ran.error());
@@ -200,11 +229,20 @@ void addSimulate(CLI::App &app, Context &context)
        ->check(CLI::Range(0.0, 1.0));
    command->add_option("--step", options->step,
                        "Time step in s, or auto for the stable one (default: the design's)");
+   command->add_option(
+       "--accuracy", options->accuracy,
+       "Choose integrator, precision and step: the cheapest that keep the first --probe, else "
+       "the cell that moves most, within this error, as 1% or 0.01");
+   command
+       ->add_option("--probe-budget", options->probeBudget,
+                    "Wall time, s, that --accuracy may spend on each setting it considers")
+       ->check(CLI::PositiveNumber);
    command->add_flag("--force-step", options->force, "Accept a step beyond the stable limit");
    command->add_option("--drag", options->drag, "Slow all motion, 1/s: settles a design to rest")
        ->check(CLI::NonNegativeNumber);
    command->add_option("--every", options->every, "Interval of the record, s")->check(CLI::PositiveNumber);
    command->footer("Examples:\n  diatom simulate beam.diatom --until 0.5 --record out.csv --probe 0,13,0:z\n"
+                   "  diatom simulate beam.diatom --until 0.5 --probe 0,13,0:z --accuracy 1%\n"
                    "  diatom simulate gripper.json --until 0.2 --step auto --effects=-gravity --json");
    command->callback([options, &context] { simulate(*options, context); });
 }

@@ -24,5 +24,6 @@ void addPipeline(CLI::App &app, Context &context);
 void addRender(CLI::App &app, Context &context);
 void addDo(CLI::App &app, Context &context);
 void addBench(CLI::App &app, Context &context);
+void addStudy(CLI::App &app, Context &context);
 
 } // namespace diatom::cli

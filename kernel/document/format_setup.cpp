@@ -49,6 +49,12 @@ std::vector<Item> readEntries(const JsonPlace &place, const char *key, const Mod
    });
 }
 
+Reference readReference(const JsonPlace &place)
+{
+   place.known({"quantity", "value", "source"});
+   return {place.at("quantity").text(), place.at("value").number(), place.textOr("source", "")};
+}
+
 } // namespace
 
 ordered_json indexJson(Index index) { return ordered_json::array({index.x, index.y, index.z}); }
@@ -142,6 +148,9 @@ ordered_json setupJson(const Setup &setup)
    json["drag_1_s"] = setup.drag;
    json["step_s"] = setup.step;
    json["solver"] = {{"id", setup.solver}, {"values", valuesJson(setup.solverValues)}};
+   for (const Reference &reference : setup.references)
+      json["references"].push_back(
+          {{"quantity", reference.quantity}, {"value", reference.value}, {"source", reference.source}});
    if (!setup.effects.empty())
       json["effects"] = setup.effects;
    return json;
@@ -164,7 +173,7 @@ Setup readSetup(const JsonPlace &place, const Model &model)
    if (!place.object())
       return setup;
    place.known({"gravity_m_s2", "supports", "drives", "loads", "starts", "sources", "ground", "drag_1_s",
-                "step_s", "solver", "effects"});
+                "step_s", "solver", "references", "effects"});
    if (place.has("gravity_m_s2"))
       setup.gravity = place.at("gravity_m_s2").numbers3();
    setup.supports = readEntries(place, "supports", model, readSupport);
@@ -184,6 +193,8 @@ Setup readSetup(const JsonPlace &place, const Model &model)
       if (solver.has("values"))
          setup.solverValues = solver.at("values").values();
    }
+   if (place.has("references"))
+      setup.references = readList<Reference>(place.at("references"), readReference);
    if (place.has("effects") && place.at("effects").object()) {
       const auto effects = place.at("effects");
       for (const auto &[name, forced] : effects.json().items())

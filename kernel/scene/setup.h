@@ -107,6 +107,15 @@ struct Ground
    friend bool operator==(const Ground &, const Ground &) = default;
 };
 
+/// An answer known from elsewhere, that studies of accuracy hold runs against.
+struct Reference
+{
+   std::string quantity; // "X,Y,Z:CHANNEL@SECONDS", "...@rest" or "...@frequency"
+   double value = 0;     // SI
+   std::string source;   // who says so
+   friend bool operator==(const Reference &, const Reference &) = default;
+};
+
 struct Setup
 {
    std::array<double, 3> gravity{0, 0, 0}; // m/s2
@@ -120,6 +129,7 @@ struct Setup
    double step = 0; // s the document asks for; 0 = the solver's stable step
    std::string solver = "org.diatom_cad.solver.bonds";
    Values solverValues;
+   std::vector<Reference> references;
    /// Effects forced on (true) or off (false); all others are decided by the planner.
    std::map<std::string, bool> effects;
    friend bool operator==(const Setup &, const Setup &) = default;

@@ -1,0 +1,115 @@
+// Studies of accuracy: errors against the reference, the front, the cheapest setting, and what is written.
+#include "core/file.h"
+#include "study/accuracy_report.h"
+#include "study/accuracy_samples.h"
+#include "support/support.h"
+
+#include <QTest>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace diatom;
+
+namespace {
+
+AccuracySample sample(const std::string &id)
+{
+   for (AccuracySample &one : accuracySamples())
+      if (one.id == id)
+         return one;
+   qFatal("no such sample");
+}
+
+Result<AccuracyStudy> studied(const AccuracySample &one, double budget)
+{
+   AccuracyRequest request = one.request;
+   request.budget = budget;
+   request.repeats = 1;
+   const Job job;
+   return studyAccuracy(test::catalogue(), one.design, request, job);
+}
+
+} // namespace
+
+class StudyAccuracyTest : public QObject
+{
+   Q_OBJECT
+
+private slots:
+   void initTestCase();
+   void theFrequencyOfABarIsWithinAPercentAtTheCheapestSetting();
+   void nothingIsBothFasterAndBetterThanTheFront();
+   void theReportHasARowForEachRunAndAPlot();
+   void aWalkersStrideIsHeldAgainstItsFinestRunAndTellsWhatIsSure();
+   void aQuantityOfNoCellIsRefused();
+};
+
+void StudyAccuracyTest::initTestCase()
+{
+   QVERIFY2(test::catalogue()->offer(DIATOM_SOLVER_1, Setup().solver), "the bond solver was not built");
+}
+
+void StudyAccuracyTest::theFrequencyOfABarIsWithinAPercentAtTheCheapestSetting()
+{
+   const auto study = studied(sample("frequency"), 3);
+   DIATOM_VERIFY_OK(study);
+   QVERIFY(study->reference.exact);
+   QVERIFY(study->cheapest >= 0);
+   QVERIFY(*study->rows[static_cast<std::size_t>(study->cheapest)].error <= 0.01);
+   QVERIFY(study->careful >= 0);
+   // Twelve bonds err by some 2e-4 against Timoshenko's beam (see the case of cantilever modes), and
+   // crossings of a record by no more.
+   QVERIFY(*study->rows[static_cast<std::size_t>(study->careful)].error < 2e-3);
+}
+
+void StudyAccuracyTest::nothingIsBothFasterAndBetterThanTheFront()
+{
+   const auto study = studied(sample("frequency"), 2);
+   DIATOM_VERIFY_OK(study);
+   QVERIFY(std::any_of(study->rows.begin(), study->rows.end(),
+                       [](const AccuracyRow &row) { return row.onFront; }));
+   for (const AccuracyRow &front : study->rows)
+      for (const AccuracyRow &other : study->rows)
+         if (front.onFront && other.error)
+            QVERIFY(!(other.seconds < front.seconds && *other.error < *front.error));
+}
+
+void StudyAccuracyTest::theReportHasARowForEachRunAndAPlot()
+{
+   auto study = studied(sample("frequency"), 1);
+   DIATOM_VERIFY_OK(study);
+   QTemporaryDir dir;
+   const std::filesystem::path folder = dir.path().toStdString();
+   DIATOM_VERIFY_OK(writeAccuracy(*study, folder));
+   const std::string csv = accuracyCsv(*study);
+   QCOMPARE(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), study->rows.size() + 1);
+   QCOMPARE(accuracyJson(*study)["rows"].size(), study->rows.size());
+   if (!canPlot())
+      QSKIP("this build has no PLplot");
+   QVERIFY(std::filesystem::file_size(folder / "accuracy.svg") > 2000);
+   QVERIFY(std::filesystem::file_size(folder / "accuracy.png") > 2000);
+}
+
+void StudyAccuracyTest::aWalkersStrideIsHeldAgainstItsFinestRunAndTellsWhatIsSure()
+{
+   const auto study = studied(sample("stride"), 4);
+   DIATOM_VERIFY_OK(study);
+   QVERIFY(!study->reference.exact);
+   QVERIFY(study->sensitivity);
+   QVERIFY(std::abs(study->reference.value) > 1e-4); // it walks a tenth of a cell at the very least
+   if (!study->reference.asymptotic)
+      QVERIFY(!study->reference.doubt.empty());
+}
+
+void StudyAccuracyTest::aQuantityOfNoCellIsRefused()
+{
+   AccuracySample one = sample("frequency");
+   one.request.quantity = parseQuantity("99,0,0:z@frequency").value();
+   const auto study = studied(one, 1);
+   QVERIFY(!study);
+   QVERIFY(study.error().code == ErrorCode::usage);
+}
+
+QTEST_APPLESS_MAIN(StudyAccuracyTest)
+#include "study_accuracy_test.moc"
