@@ -24,8 +24,9 @@ struct AccuracyOptions
 std::string settingOf(const AccuracyStudy &study, int k)
 {
    const AccuracyRow &row = study.rows[static_cast<std::size_t>(k)];
-   std::string text =
-       row.step > 0 ? fmt::format("{}, step {} s", row.setting, numberText(row.step)) : row.setting;
+   std::string text = row.step > 0
+                          ? fmt::format("{}, step {} s", row.setting, fmt::format("{:.3g}", row.step))
+                          : row.setting;
    if (row.resolution > 1)
       text += fmt::format(", resolution {}", row.resolution);
    return fmt::format("{}: error {}, {} s", text, row.error ? fmt::format("{:.2g}", *row.error) : "unknown",

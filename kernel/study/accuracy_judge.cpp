@@ -183,14 +183,18 @@ std::optional<double> Judge::errorOf(const AccuracyRun &run) const
 int Judge::carefulRow() const
 {
    const bool cut = m_runs.request().request.resolutions.size() > 1;
-   int careful = -1;
+   int balance = -1, motion = -1;
    for (const AccuracyLadder &ladder : m_runs.ladders()) {
       const bool still = ladder.analysis != Analysis::dynamics;
-      const std::size_t last = ladder.rows.back();
-      if (still == cut && m_runs.runs()[last].done() && (careful < 0 || (cut && isStill(m_quantity))))
-         careful = static_cast<int>(last);
+      if (still && cut && m_runs.runs()[ladder.rows.back()].done())
+         balance = static_cast<int>(ladder.rows.back());
+      for (const std::size_t k : ladder.rows)
+         if (!still && m_runs.runs()[k].done() &&
+             (motion < 0 ||
+              m_runs.runs()[k].ladder == m_runs.runs()[static_cast<std::size_t>(motion)].ladder))
+            motion = static_cast<int>(k);
    }
-   return careful;
+   return balance >= 0 ? balance : motion;
 }
 
 void Judge::markFront(AccuracyStudy &study) const

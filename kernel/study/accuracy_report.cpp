@@ -57,15 +57,14 @@ std::string rowName(const AccuracyRow &row)
 
 std::string percent(double relative)
 {
-   return relative >= 1e-4 ? fixedText(100 * relative, relative >= 0.1 ? 0 : 2) + " %"
-                           : fmt::format("{:.0e}", relative);
+   return relative >= 1e-4 ? fmt::format("{:.2g} %", 100 * relative) : fmt::format("{:.0e}", relative);
 }
 
 std::string titleOf(const AccuracyStudy &study)
 {
    const std::string scene = study.scene.empty() ? "" : study.scene + ": ";
-   return fmt::format("{}error of {} against time, {} s simulated", scene, study.quantity.text(),
-                      numberText(study.until));
+   return fmt::format("{}error of {} against time, {:.3g} s simulated", scene, study.quantity.text(),
+                      study.until);
 }
 
 /// Rows of one name in the order of their steps.
@@ -140,7 +139,7 @@ Chart accuracyChart(const AccuracyStudy &study)
    for (const Series &one : chart.series)
       all.insert(all.end(), one.points.begin(), one.points.end());
    chart.front = paretoFront(all);
-   chart.frontName = "nothing is both faster and better";
+   chart.frontName = "nothing beats these";
    chart.limit = study.tolerance;
    chart.limitName = "asked: " + percent(study.tolerance);
    if (study.cheapest >= 0) {

@@ -141,8 +141,8 @@ AccuracySample stride()
    const Cell muscle{added(model, actuator), 0, 0};
    const Cell source{added(model, wired("source", 6500, 2e5, 0.1, ElectricalRole::source)), 0, 0};
    CellArray &cells = model.root.cells;
-   cells.fill({{0, 0, 0}, {3, 2, 2}}, hard);
-   cells.fill({{0, 3, 0}, {3, 3, 2}}, hard);
+   cells.fill({{0, 0, 0}, {2, 1, 1}}, hard);
+   cells.fill({{0, 3, 0}, {2, 5, 1}}, hard);
    cells.set({1, 2, 1}, soft);
    cells.set({0, 2, 0}, muscle);
    cells.set({2, 2, 0}, muscle);
@@ -157,8 +157,8 @@ AccuracySample stride()
    design.setup.ground.height = -kPitch / 2;
    sample.request.until = kSteps / kHertz;
    Quantity way;
-   way.cell = {1, 1, 1};
-   way.channel = "x";
+   way.cell = {1, 1, 0};
+   way.channel = "y";
    way.when = Quantity::When::atTime;
    way.time = sample.request.until;
    sample.request.quantity = way;

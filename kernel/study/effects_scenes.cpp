@@ -92,7 +92,7 @@ Design grounded(double friction)
 template<typename Change>
 EffectScene changed(const char *effect, const char *what, Design without, const Change &change)
 {
-   EffectScene scene{effect, what, without, std::move(without), false};
+   EffectScene scene{effect, what, without, std::move(without)};
    Edit edit(scene.calledFor);
    change(edit);
    return scene;
@@ -101,6 +101,16 @@ EffectScene changed(const char *effect, const char *what, Design without, const 
 EffectScene byMaterial(EffectScene scene)
 {
    scene.byMaterial = true;
+   return scene;
+}
+
+/// Switched on, it acts on every material that has a Poisson's ratio, whether it asks for it or not.
+EffectScene poisson()
+{
+   EffectScene scene = changed("poisson", "sideways strain follows axial strain", block(), [](Edit &e) {
+      e.material([](Material &one) { one.poissonCoupling = true; });
+   });
+   scene.nothing = false;
    return scene;
 }
 
@@ -150,8 +160,7 @@ std::vector<EffectScene> effectScenes()
        byMaterial(
            changed("solid", "solid elements instead of bonds", block(),
                    [](Edit &e) { e.material([](Material &one) { one.cellModel = CellModel::solid; }); })),
-       changed("poisson", "sideways strain follows axial strain", block(),
-               [](Edit &e) { e.material([](Material &one) { one.poissonCoupling = true; }); }),
+       poisson(),
    };
 }
 

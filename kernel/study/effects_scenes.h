@@ -15,7 +15,8 @@ struct EffectScene
    std::string what;        // the scene, for people
    Design without;          // has nothing of the effect
    Design calledFor;        // the same, and the effect
-   bool byMaterial = false; // the material asks for it: the scene is built otherwise, and cannot be switched
+   bool byMaterial = false; // the scene is built otherwise for it, and it cannot be switched
+   bool nothing = true;     // switched on where nothing calls for it, it contributes nothing
 };
 
 /// One for each effect that a solver may have; all are blocks of cells that swing.

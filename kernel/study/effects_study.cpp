@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 
 namespace diatom {
 
@@ -16,7 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kStep = 0.45; // of the shortest stable step of a row's scenes: no accuracy is asked for
+constexpr double kLeastTurn = 2e-3; // s, of the fastest scene of a row: a clock's own error is nothing to it
+constexpr double kStep = 0.45;      // of the shortest stable step of a row's scenes: no accuracy is asked for
 
 Result<Subject> subjectOf(const std::shared_ptr<const Catalogue> &catalogue, const Design &design,
                           const Job &job)
@@ -79,10 +81,17 @@ Status Race::run()
          return simulation.error();
       m_simulations[k] = *std::move(simulation);
    }
-   const auto time = timeStep(m_subjects.front(), {}, step, 1e9 * step, m_request.turnSeconds, m_job);
-   if (!time)
-      return time.error();
-   const double stretch = step * std::max(1.0, std::round(m_request.turnSeconds / *time));
+   double fastest = std::numeric_limits<double>::infinity(), slowest = 0;
+   for (const Subject &subject : m_subjects) {
+      const auto time = timeStep(subject, {}, step, 1e9 * step, kLeastTurn, m_job);
+      if (!time)
+         return time.error();
+      fastest = std::min(fastest, *time);
+      slowest = std::max(slowest, *time);
+   }
+   const double steps =
+       std::max(m_request.turnSeconds / slowest, std::min(m_request.turnSeconds, kLeastTurn) / fastest);
+   const double stretch = step * std::max(1.0, std::round(steps));
    m_seconds.assign(m_simulations.size(), {});
    for (int turn = 0; turn <= m_request.turns; ++turn)
       for (std::size_t k = 0; k < m_simulations.size(); ++k) {
@@ -144,7 +153,8 @@ Result<EffectRow> study(const std::shared_ptr<const Catalogue> &catalogue, const
    enter(scene.calledFor, called);
    if (called > 0 && switches) {
       enter(with(scene.calledFor, scene.effect, false), ruledOut);
-      enter(with(scene.without, scene.effect, true), forcedOn);
+      if (scene.nothing)
+         enter(with(scene.without, scene.effect, true), forcedOn);
    }
    if (const Status ran = race.run(); !ran)
       return ran.error();
@@ -228,7 +238,7 @@ Result<EffectsStudy> studyEffectsOf(const std::shared_ptr<const Catalogue> &cata
    for (const Effect &effect : (*scene)->effects()) {
       if (!effect.on || !effectIsForSolver(effect.name))
          continue;
-      const EffectScene pair{effect.name, effect.why, with(design, effect.name, false), design, false};
+      const EffectScene pair{effect.name, effect.why, with(design, effect.name, false), design};
       auto row = study(catalogue, pair, false, request, job);
       if (!row && row.error().code == ErrorCode::cancelled)
          return row.error();

@@ -46,7 +46,7 @@ namespace {
 constexpr std::array<std::array<int, 3>, 12> kColors{{{255, 255, 255},
                                                       {30, 30, 30},
                                                       {222, 222, 222},
-                                                      {200, 214, 235},
+                                                      {172, 196, 232},
                                                       {0, 114, 178},
                                                       {213, 94, 0},
                                                       {0, 158, 115},
@@ -195,7 +195,7 @@ private:
    void front() const
    {
       plcol0(kFront);
-      plwidth(7);
+      plwidth(11);
       polyline(lineOf(m_chart.front));
    }
 

@@ -1,5 +1,6 @@
 // What effects cost: one that is absent or switched off leaves every bit as it is. Times are told, not
 // judged.
+#include "scene/effects.h"
 #include "study/effects_study.h"
 #include "support/support.h"
 
