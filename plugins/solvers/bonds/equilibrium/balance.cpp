@@ -12,20 +12,7 @@
 
 namespace bonds {
 
-using sdk::Failure;
-
 namespace {
-
-Vec3 mixed(Vec3 a, Vec3 b, double f) { return a + f * (b - a); }
-
-void mix(const Column &a, const Column &b, double f, Column &out)
-{
-   out.resize(std::max(a.size(), b.size()));
-   for (std::size_t i = 0; i < out.size(); ++i) {
-      const double from = i < a.size() ? a[i] : 0, to = i < b.size() ? b[i] : 0;
-      out[i] = from + f * (to - from);
-   }
-}
 
 template<bool Rates>
 BondEnds bondEnds(const Assembly &assembly, const State &state, std::int64_t bond, const Mat3 &frame)
@@ -105,27 +92,6 @@ double blockedForce(const BondConstants &k, Vec3 stretch, Vec3 turn, double leng
 
 } // namespace
 
-Vec3 logarithm(Quat q)
-{
-   const Vec3 v = q.w < 0 ? -vec(q) : vec(q);
-   double s = 1, p = 0;
-   arcRatio(dot(v, v), std::abs(q.w), s, p);
-   return (2 * s) * v;
-}
-
-Loading blend(const Loading &a, const Loading &b, double f)
-{
-   Loading out;
-   out.gravity = mixed(a.gravity, b.gravity, f);
-   mix(a.force, b.force, f, out.force);
-   mix(a.driven, b.driven, f, out.driven);
-   for (int k = 0; k < 3; ++k) {
-      mix(a.rest.d[k], b.rest.d[k], f, out.rest.d[k]);
-      mix(a.rest.phi[k], b.rest.phi[k], f, out.rest.phi[k]);
-   }
-   return out;
-}
-
 Balance::Balance(const sdk::SceneView &scene, const Options &options)
     : m_assembly(scene, options), m_pitch(scene.pitch()), m_actuation(scene, m_assembly),
       m_supports(scene, m_assembly), m_couplings(makeCouplings(scene, m_assembly))
@@ -146,59 +112,6 @@ std::string Balance::name(std::int64_t cell) const
 {
    const auto &at = m_index[cell];
    return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
-}
-
-void Balance::setLoads(const sdk::Channel &loads)
-{
-   m_force.assign(static_cast<std::size_t>(6 * m_assembly.cells), 0);
-   for (std::int64_t i = 0; i < loads.count(); ++i)
-      for (int k = 0; k < 6; ++k)
-         m_force[6 * loads.where(i) + k] += loads.row(i)[k];
-}
-
-void Balance::apply(std::span<const diatom_channel> channels)
-{
-   for (const diatom_channel &channel : channels) {
-      const std::string_view name = channel.name;
-      if (name == "force" && m_assembly.hasLoads)
-         setLoads(sdk::findChannel(channels, name, 6, m_assembly.cells));
-      else if (name == "source")
-         m_actuation.setSources(sdk::findChannel(channels, name, 6, -1));
-      else if (name == "curve")
-         m_supports.setCurves(channels);
-      else if (name == "gravity" && m_assembly.hasGravity && channel.count == 1)
-         std::copy_n(sdk::findChannel(channels, name, 3, -1).row(0), 3, m_assembly.gravity.begin());
-      else
-         throw Failure(DIATOM_UNSUPPORTED, "a change of \"" + std::string(name) + "\" needs a new run");
-   }
-}
-
-Loading Balance::loadingAt(double time) const
-{
-   Loading out;
-   if (m_assembly.hasGravity)
-      out.gravity = {m_assembly.gravity[0], m_assembly.gravity[1], m_assembly.gravity[2]};
-   out.force = m_force;
-   if (m_actuation.active()) {
-      out.rest = m_actuation.shape();
-      m_actuation.setRest(time, out.rest);
-   }
-   out.driven = m_supports.targets(time);
-   return out;
-}
-
-Loading Balance::unloaded(const State &state) const
-{
-   Loading out;
-   out.force.assign(m_force.size(), 0);
-   if (m_actuation.active())
-      out.rest = m_actuation.shape();
-   for (const Driven &driven : m_supports.driven()) {
-      const Vec3 u = state.displacementOf(driven.cell), turn = logarithm(state.turnOf(driven.cell));
-      const double at[6] = {u.x, u.y, u.z, turn.x, turn.y, turn.z};
-      out.driven.push_back(at[driven.freedom]);
-   }
-   return out;
 }
 
 double Balance::cellForces(std::int64_t cell, const State &state, const RestShape &rest, bool rates,
