@@ -107,7 +107,7 @@ Status findInput(const Context::Input &input, const Options &options, Context &c
    if (!found)
       return found.error();
    if (!options.shapes.empty())
-      if (const Status kept = writeShapes(*found, options.shapes, context.job()); !kept)
+      if (Status kept = writeShapes(*found, options.shapes, context.job()); !kept)
          return kept;
    context.print(report(*found, context.json));
    for (const Mode &mode : found->modes)

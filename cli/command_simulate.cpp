@@ -62,13 +62,13 @@ Status runTo(Simulation &simulation, const Options &options, Recorder *recorder,
       return Error{ErrorCode::usage,
                    "--every is too short: the record would have more than ten million rows"};
    const auto rows = static_cast<std::int64_t>(std::ceil(options.until / every * (1 - 1e-12)));
-   if (const Status first = recorder->row(simulation.run(), job); !first)
+   if (Status first = recorder->row(simulation.run(), job); !first)
       return first;
    for (std::int64_t k = 1; k <= rows; ++k) {
       const double until = k == rows ? options.until : every * static_cast<double>(k);
-      if (const Status advanced = simulation.advance(until, job); !advanced)
+      if (Status advanced = simulation.advance(until, job); !advanced)
          return advanced;
-      if (const Status written = recorder->row(simulation.run(), job); !written)
+      if (Status written = recorder->row(simulation.run(), job); !written)
          return written;
    }
    return {};
@@ -114,7 +114,7 @@ Status finishFiles(const Simulation &simulation, const Model &model, const Optio
                    Recorder *recorder, const Status &ran, const Job &job)
 {
    if (recorder)
-      if (const Status kept = recorder->finish(ran ? "" : ran.error().message); !kept)
+      if (Status kept = recorder->finish(ran ? "" : ran.error().message); !kept)
          return kept;
    return options.run.state.empty() || !ran ? Status()
                                             : writeState(simulation.run(), model, options.run.state, job);
@@ -192,8 +192,8 @@ void simulate(const Options &options, Context &context)
                         : ran.error().code == ErrorCode::unstable  ? "unstable"
                         : ran.error().code == ErrorCode::cancelled ? "cancelled"
                                                                    : "failed";
-   if (const Status kept = finishFiles(simulation, input->opened.design.model, options,
-                                       recorder ? &*recorder : nullptr, ran, calm);
+   if (Status kept = finishFiles(simulation, input->opened.design.model, options,
+                                 recorder ? &*recorder : nullptr, ran, calm);
        !kept)
       return context.fail(kept.error());
    if (!ran && std::string_view(status) == "failed")

@@ -190,7 +190,7 @@ Result<Balance> balances(const Options &options, const Setup &setup, const std::
          went = addRow(*recorder, *balance, setup, context.job());
    }
    if (recorder)
-      if (const Status kept = recorder->finish(went ? "" : went.error().message); !kept)
+      if (Status kept = recorder->finish(went ? "" : went.error().message); !kept)
          return kept.error();
    if (!went)
       return went.error();
@@ -200,7 +200,7 @@ Result<Balance> balances(const Options &options, const Setup &setup, const std::
 Status solveInput(const Context::Input &input, const Options &options, Context &context)
 {
    const Setup &setup = input.opened.design.setup;
-   if (const Status held = checkHeld(input, context); !held)
+   if (Status held = checkHeld(input, context); !held)
       return held;
    const auto times = timesOf(options, options.at.value_or(endOfCurves(setup)));
    if (!times)
@@ -218,7 +218,7 @@ Status solveInput(const Context::Input &input, const Options &options, Context &
       return balance.error();
    const Model &model = input.opened.design.model;
    if (!options.run.state.empty())
-      if (const Status kept = writeState(*balance->run, model, options.run.state, context.job()); !kept)
+      if (Status kept = writeState(*balance->run, model, options.run.state, context.job()); !kept)
          return kept;
    if (!options.stl.empty())
       if (const auto kept =
