@@ -2,7 +2,7 @@
 // on the number of threads.
 #include "equilibrium/balance.h"
 
-#include "model/bond_tangent.h"
+#include "model/bond_ends.h"
 #include "model/contact.h"
 #include "solid/couplings.h"
 
@@ -14,39 +14,19 @@ namespace bonds {
 
 namespace {
 
-template<bool Rates>
-BondEnds bondEnds(const Assembly &assembly, const State &state, std::int64_t bond, const Mat3 &frame)
-{
-   const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
-   const auto local = [&](Quat q) {
-      const Vec3 v = frame * vec(q);
-      return Quat{q.w, v.x, v.y, v.z};
-   };
-   BondEnds ends;
-   ends.displacement = frame * (state.displacementOf(b) - state.displacementOf(a));
-   ends.length = assembly.length[bond];
-   ends.qa = local(state.turnOf(a));
-   ends.qb = local(state.turnOf(b));
-   if constexpr (Rates) {
-      ends.dv = frame * (state.velocityOf(b) - state.velocityOf(a));
-      ends.wa = frame * state.spinOf(a);
-      ends.wb = frame * state.spinOf(b);
-   }
-   return ends;
-}
-
 Vec3 stretchOf(const Assembly &assembly, const RestShape &rest, std::int64_t bond)
 {
    if (rest.d[0].empty())
       return {};
    return rest.separation(bond) - Vec3{assembly.length[bond], 0, 0};
 }
-/// As couplings take it: none when nothing is driven.
-const RestShape *restOf(const RestShape &rest) { return rest.d[0].empty() ? nullptr : &rest; }
 Vec3 turnOf(const RestShape &rest, std::int64_t bond)
 {
    return rest.phi[0].empty() ? Vec3{} : rest.turn(bond);
 }
+
+/// As couplings take it: none when nothing is driven.
+const RestShape *restOf(const RestShape &rest) { return rest.d[0].empty() ? nullptr : &rest; }
 
 BondPoint pointOf(const Assembly &assembly, const State &state, const RestShape &rest, std::int64_t bond,
                   const Mat3 &frame, bool rates)

@@ -169,7 +169,7 @@ std::unique_ptr<Inverse> makeFactors(const BlockMatrix &pattern, const Vector &f
 std::unique_ptr<Inverse> makeInverse(const BlockMatrix &pattern, const Vector &free, const Places &rest)
 {
    constexpr double kMostBlocks = 3e6;     // some 1.5 GB
-   constexpr double kMostOperations = 2e9; // some 3 s
+   constexpr double kMostOperations = 2e9; // a second or so
    std::vector<std::int32_t> order = eliminationOrder(pattern);
    const Fill fill = countFill(pattern, order, kMostBlocks);
    if (fill.operations <= kMostOperations)

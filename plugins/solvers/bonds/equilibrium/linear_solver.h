@@ -39,7 +39,9 @@ std::vector<std::int32_t> eliminationOrder(const BlockMatrix &matrix);
 std::unique_ptr<Inverse> makeFactors(const BlockMatrix &pattern, const Vector &free,
                                      std::vector<std::int32_t> order);
 std::unique_ptr<Inverse> makeMultigrid(const BlockMatrix &pattern, const Vector &free, const Places &rest);
-/// Whichever takes less time.
+/// Factors while they take a second or so, since they know unstable directions and do not mind contrast, else
+/// multigrid, which is faster from some 500 dense cells on (12^3: 1.2 s by factors; 13^3: 0.06 s by
+/// multigrid).
 std::unique_ptr<Inverse> makeInverse(const BlockMatrix &pattern, const Vector &free, const Places &rest);
 
 /// What ended an iteration.

@@ -54,7 +54,6 @@ Inverted::Inverted(const sdk::Call &call, const Balance &balance, const State &s
       m_inverse(makeInverse(m_stiffness, m_free, placesOf(balance.assembly(), State(state.n))))
 {
    balance.stiffness(call, state, loading, 0, m_stiffness);
-   Column sums(m_mass.size(), 0);
    for (std::size_t i = 0; i < m_mass.size(); ++i) {
       const Eigen::LLT<Block> llt(m_mass[i]);
       m_root[i] = llt.matrixU();

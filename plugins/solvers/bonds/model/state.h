@@ -48,15 +48,11 @@ inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bo
 {
    const Mat3 frame = assembly.frameOf(bond);
    const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
-   const auto local = [&](Quat q) {
-      const Vec3 v = frame * vec(q);
-      return Quat{q.w, v.x, v.y, v.z};
-   };
    Ends ends;
    ends.separation = frame * (state.displacementOf(b) - state.displacementOf(a));
    ends.separation.x += assembly.length[bond];
-   ends.qa = local(state.turnOf(a));
-   ends.qb = local(state.turnOf(b));
+   ends.qa = inAxes(frame, state.turnOf(a));
+   ends.qb = inAxes(frame, state.turnOf(b));
    ends.dv = frame * (state.velocityOf(b) - state.velocityOf(a));
    ends.wa = frame * state.spinOf(a);
    ends.wb = frame * state.spinOf(b);

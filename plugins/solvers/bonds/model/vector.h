@@ -47,6 +47,13 @@ inline Vec3 transposed(const Mat3 &m, Vec3 a)
            m.r0.z * a.x + m.r1.z * a.y + m.r2.z * a.z};
 }
 
+/// The same rotation told in other axes.
+inline Quat inAxes(const Mat3 &frame, Quat q)
+{
+   const Vec3 v = frame * vec(q);
+   return {q.w, v.x, v.y, v.z};
+}
+
 /// Rotation matrix of a quaternion of any length but zero.
 inline Mat3 matrix(Quat q)
 {

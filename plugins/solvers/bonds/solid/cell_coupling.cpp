@@ -2,6 +2,8 @@
 // tangent in cell_coupling_tangent.cpp.
 #include "solid/cell_coupling.h"
 
+#include "model/bond_ends.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -128,18 +130,8 @@ void CellCoupling::addCell(const CoupledCell &cell)
 
 BondEnds CellCoupling::endsAt(const State &state, std::int64_t number) const
 {
-   const std::int64_t bond = m_bond[number], a = m_assembly->a[bond], b = m_assembly->b[bond];
-   const Mat3 frame = m_assembly->frameOf(bond);
-   const auto local = [&](Quat q) {
-      const Vec3 v = frame * vec(q);
-      return Quat{q.w, v.x, v.y, v.z};
-   };
-   BondEnds ends;
-   ends.displacement = frame * (state.displacementOf(b) - state.displacementOf(a));
-   ends.length = m_assembly->length[bond];
-   ends.qa = local(state.turnOf(a));
-   ends.qb = local(state.turnOf(b));
-   return ends;
+   const std::int64_t bond = m_bond[number];
+   return bondEnds<false>(*m_assembly, state, bond, m_assembly->frameOf(bond));
 }
 
 Vec3 CellCoupling::meanOf(std::int64_t coupled, const Column &stretch, double Weight::*weight) const
