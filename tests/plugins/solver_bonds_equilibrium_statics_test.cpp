@@ -1,24 +1,9 @@
 // Static balances against reference data that nothing here was tuned to.
 #include "solver_bonds_equilibrium_scene.h"
-
-#include <nlohmann/json.hpp>
-
-#include <fstream>
+#include "solver_bonds_reference.h"
 
 using namespace diatom::test;
 using nlohmann::json;
-
-namespace {
-
-json readReference(const std::string &name)
-{
-   std::ifstream file(sharedDir() / "validation" / name);
-   return json::parse(file);
-}
-
-const std::map<std::string, std::string> kModels{{"a", "thesis"}, {"b", "timoshenko"}, {"c", "euler"}};
-
-} // namespace
 
 class SolverBondsEquilibriumStaticsTest : public QObject
 {

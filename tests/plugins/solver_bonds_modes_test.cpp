@@ -1,23 +1,13 @@
 // Vibrations about a balance, against exact frequencies of chains and blocks.
+#include "solver_bonds_reference.h"
 #include "solver_bonds_scene.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
-#include <fstream>
 
 using namespace diatom::test;
 using nlohmann::json;
 
 namespace {
-
-json readReference(const std::string &name)
-{
-   std::ifstream file(sharedDir() / "validation" / name);
-   return json::parse(file);
-}
-
-const std::map<std::string, std::string> kModels{{"a", "thesis"}, {"b", "timoshenko"}, {"c", "euler"}};
 
 /// The reference's cubes of mass m are cubes here too.
 HandScene sceneOf(const json &reference, int nx, int ny, int nz)

@@ -28,9 +28,9 @@ inline double torsionConstant(double a, double b)
    const double kPi = 3.14159265358979323846;
    if (a < b)
       std::swap(a, b);
-   double sum = 0;
-   for (int n = 1; n <= 9; n += 2)
-      sum += std::tanh(n * kPi * a / (2 * b)) / std::pow(n, 5);
+   double sum = 31.0 / 32 * 1.0369277551433699; // of 1 / n^5 over odd n: 31/32 zeta(5)
+   for (int n = 1; n <= 9; n += 2)              // beyond, tanh is 1 to rounding
+      sum -= (1 - std::tanh(n * kPi * a / (2 * b))) / std::pow(n, 5);
    return a * b * b * b / 3 * (1 - 192 * b / (std::pow(kPi, 5) * a) * sum);
 }
 
