@@ -24,7 +24,7 @@ struct Options
    RunOptions run;
    std::string integrator, step, accuracy;
    double until = 0, every = 0, probeBudget = 30;
-   std::optional<double> drag, rho;
+   std::optional<double> drag;
    bool force = false;
 };
 
@@ -33,8 +33,6 @@ Status applyOptions(const Options &options, Setup &setup)
 {
    if (!options.integrator.empty())
       setup.solverValues["integrator"] = options.integrator;
-   if (options.rho)
-      setup.solverValues["rho"] = *options.rho;
    if (options.force)
       setup.solverValues["force_step"] = 1.0;
    if (options.drag)
@@ -159,8 +157,6 @@ Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::In
       asked.quantity = options.run.probes.front();
    if (!options.integrator.empty())
       asked.fixed["integrator"] = options.integrator;
-   if (!options.run.precision.empty())
-      asked.fixed["precision"] = options.run.precision;
    auto choice = applyAccuracy(asked, input, input.opened.design.setup, context);
    if (!choice)
       return choice.error();
@@ -220,19 +216,12 @@ void addSimulate(CLI::App &app, Context &context)
        ->required()
        ->check(CLI::PositiveNumber);
    command->add_option("--integrator", options->integrator,
-                       "The solver's integrator, e.g. semi_implicit, verlet, rk4, implicit");
-   command
-       ->add_option(
-           "--rho", options->rho,
-           "Implicit integrator: what a step leaves of the fastest vibrations, 0 to 1; 1 = no numerical "
-           "damping")
-       ->check(CLI::Range(0.0, 1.0));
+                       "The solver's integrator, e.g. semi_implicit, verlet, rk4");
    command->add_option("--step", options->step,
                        "Time step in s, or auto for the stable one (default: the design's)");
-   command->add_option(
-       "--accuracy", options->accuracy,
-       "Choose integrator, precision and step: the cheapest that keep the first --probe, else "
-       "the cell that moves most, within this error, as 1% or 0.01");
+   command->add_option("--accuracy", options->accuracy,
+                       "Choose integrator and step: the cheapest that keep the first --probe, else "
+                       "the cell that moves most, within this error, as 1% or 0.01");
    command
        ->add_option("--probe-budget", options->probeBudget,
                     "Wall time, s, that --accuracy may spend on each setting it considers")

@@ -16,12 +16,9 @@ Status apply(const RunOptions &options, Design &design)
          return set;
    Setup &setup = design.setup;
    for (const auto &[name, value] :
-        {std::pair{"beam", &options.beam}, std::pair{"gradient", &options.gradient},
-         std::pair{"precision", &options.precision}})
+        {std::pair{"beam", &options.beam}, std::pair{"gradient", &options.gradient}})
       if (!value->empty())
          setup.solverValues[name] = *value;
-   if (options.reproducible)
-      setup.solverValues["reproducible"] = 1.0;
    return options.effects.empty() ? Status() : applyEffects(options.effects, setup);
 }
 
@@ -33,10 +30,6 @@ void addModelOptions(CLI::App &command, RunOptions &options)
        ->required();
    command.add_option("--beam", options.beam, "Beam theory of a bond: timoshenko, thesis, euler");
    command.add_option("--gradient", options.gradient, "Torques: exact or simple");
-   command.add_option("--precision", options.precision,
-                      "Numbers of the solver: f64 (double) or f32 (single)");
-   command.add_flag("--reproducible", options.reproducible,
-                    "The same bits on any processor and compiler, at some cost in time");
    command.add_option("--effects", options.effects, "auto, or +NAME,-NAME to switch effects on and off");
    command
        .add_option("--set", options.settings, "Change PATH=VALUE for this run, e.g. gravity.z=-9.81; repeats")

@@ -14,12 +14,11 @@ namespace diatom::cli {
 
 struct RunOptions
 {
-   std::string file, beam, gradient, precision, effects, record, state;
-   bool reproducible = false;
+   std::string file, beam, gradient, effects, record, state;
    std::vector<std::string> probes, settings;
 };
 
-/// FILE, --beam, --gradient, --precision, --reproducible, --effects and --set.
+/// FILE, --beam, --gradient, --effects and --set.
 void addModelOptions(CLI::App &command, RunOptions &options);
 /// Those, and --probe, --record and --state.
 void addRunOptions(CLI::App &command, RunOptions &options);
