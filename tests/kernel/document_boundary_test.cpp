@@ -2,6 +2,7 @@
 // undone, and what it refuses.
 #include "document/document.h"
 #include "document/files.h"
+#include "tests/kernel/document_run.h"
 #include "tests/support/support.h"
 
 using namespace diatom;
@@ -26,22 +27,6 @@ Document start()
    must("place", R"({"cell": [0,0,1], "material": "b"})");
    return document;
 }
-
-std::string run(Document &document, const char *command, const char *arguments)
-{
-   const auto done = document.run(command, json::parse(arguments), Job());
-   return done.ok() ? std::string() : done.error().message;
-}
-
-#define DO(command, arguments) QCOMPARE(run(d, command, arguments), std::string())
-#define REFUSED(command, arguments, says)                                                                    \
-   do {                                                                                                      \
-      const auto hashBefore = d.design().hash();                                                             \
-      const auto message = run(d, command, arguments);                                                       \
-      QVERIFY2(message.find(says) != std::string::npos, message.c_str());                                    \
-      QVERIFY2(message.starts_with(command), message.c_str());                                               \
-      QVERIFY(d.design().hash() == hashBefore);                                                              \
-   } while (false)
 
 } // namespace
 
@@ -108,7 +93,7 @@ private slots:
 
       const QByteArray id = command.toUtf8();
       const auto refused = [&](const char *where, const char *says) {
-         const auto message = run(d, id.constData(), with(where).c_str());
+         const auto message = test::run(d, id.constData(), with(where).c_str());
          QVERIFY2(message.starts_with(id.constData()), message.c_str());
          QVERIFY2(message.find(says) != std::string::npos, message.c_str());
          QVERIFY(d.design().hash() == empty);

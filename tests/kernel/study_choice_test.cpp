@@ -1,5 +1,5 @@
 // Settings chosen for an asked accuracy: that they meet it, that nothing tried is cheaper, and what is told.
-#include "kernel/scene_workbench.h"
+#include "kernel/study_scene.h"
 #include "study/accuracy_choice.h"
 
 #include <QTest>
@@ -8,24 +8,10 @@
 #include <cmath>
 
 using namespace diatom;
-using test::Workbench;
+using test::cantilever;
+using test::subjectOf;
 
 namespace {
-
-/// Twelve cells along y, clamped at the root, falling under gravity: first mode some 14 Hz.
-Subject cantilever()
-{
-   Workbench bench;
-   Material fibre = test::material("fibre");
-   fibre.density = 3500;
-   fibre.youngsModulus = 5e5;
-   bench.add(fibre);
-   for (std::int32_t y = 0; y < 12; ++y)
-      bench.put("fibre", {{0, y, 0}});
-   bench.setup.supports = {{Index{0, 0, 0}, 0x3f}};
-   bench.setup.gravity = {0, 0, -9.8};
-   return {test::catalogue(), std::make_shared<const Hierarchy>(bench.hierarchy()), bench.setup, 1};
-}
 
 ChoiceRequest within(double error)
 {
@@ -61,7 +47,7 @@ void StudyChoiceTest::initTestCase()
 
 void StudyChoiceTest::theChosenSettingsMeetTheAskedError()
 {
-   const Subject subject = cantilever();
+   const Subject subject = subjectOf(cantilever());
    const Job job;
    for (const double asked : {1e-2, 1e-3}) {
       const ChoiceRequest request = within(asked);
@@ -91,7 +77,7 @@ void StudyChoiceTest::theChosenSettingsMeetTheAskedError()
 void StudyChoiceTest::theChosenSettingsAreTheCheapestOfThoseThatMeetIt()
 {
    const Job job;
-   const auto choice = chooseForAccuracy(cantilever(), within(1e-3), job);
+   const auto choice = chooseForAccuracy(subjectOf(cantilever()), within(1e-3), job);
    DIATOM_VERIFY_OK(choice);
    QVERIFY(choice->candidates.size() > 1);
    for (const SettingOption &one : choice->candidates) {
@@ -108,8 +94,8 @@ void StudyChoiceTest::aTighterAskTakesAShorterStep()
    const Job job;
    ChoiceRequest loose = within(1e-2), tight = within(1e-5);
    loose.fixed = tight.fixed = {{"integrator", std::string("verlet")}};
-   const auto a = chooseForAccuracy(cantilever(), loose, job),
-              b = chooseForAccuracy(cantilever(), tight, job);
+   const auto a = chooseForAccuracy(subjectOf(cantilever()), loose, job),
+              b = chooseForAccuracy(subjectOf(cantilever()), tight, job);
    DIATOM_VERIFY_OK(a);
    DIATOM_VERIFY_OK(b);
    QVERIFY(b->best().step < a->best().step);
@@ -120,7 +106,7 @@ void StudyChoiceTest::whatIsFixedIsNotChosen()
    const Job job;
    ChoiceRequest request = within(1e-2);
    request.fixed = {{"integrator", std::string("rk4")}};
-   const auto choice = chooseForAccuracy(cantilever(), request, job);
+   const auto choice = chooseForAccuracy(subjectOf(cantilever()), request, job);
    DIATOM_VERIFY_OK(choice);
    for (const SettingOption &one : choice->candidates)
       QCOMPARE(std::get<std::string>(one.values.at("integrator")), std::string("rk4"));
@@ -131,7 +117,7 @@ void StudyChoiceTest::anAskBeyondReasonIsRefusedWithTheReason()
    const Job job;
    ChoiceRequest request = within(1e-14); // below what double precision holds over some thousand steps
    request.fixed = {{"integrator", std::string("semi_implicit")}};
-   const auto choice = chooseForAccuracy(cantilever(), request, job);
+   const auto choice = chooseForAccuracy(subjectOf(cantilever()), request, job);
    QVERIFY(!choice);
    QVERIFY(choice.error().code == ErrorCode::invalid);
    QVERIFY(choice.error().message.find("semi_implicit") != std::string::npos);
@@ -142,7 +128,7 @@ void StudyChoiceTest::aMissingCellIsRefused()
    const Job job;
    ChoiceRequest request = within(1e-2);
    request.quantity = parseQuantity("5,5,5:z").value();
-   const auto choice = chooseForAccuracy(cantilever(), request, job);
+   const auto choice = chooseForAccuracy(subjectOf(cantilever()), request, job);
    QVERIFY(!choice);
    QVERIFY(choice.error().code == ErrorCode::usage);
 }
@@ -151,7 +137,7 @@ void StudyChoiceTest::aCancelEndsTheSearch()
 {
    Job job;
    job.cancel();
-   const auto choice = chooseForAccuracy(cantilever(), within(1e-2), job);
+   const auto choice = chooseForAccuracy(subjectOf(cantilever()), within(1e-2), job);
    QVERIFY(!choice);
    QVERIFY(choice.error().code == ErrorCode::cancelled);
 }

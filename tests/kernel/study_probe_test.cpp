@@ -1,37 +1,17 @@
 // Quantities, convergence and the accuracy probe: what is told is so, what cannot be told is called unknown.
-#include "kernel/scene_workbench.h"
+#include "kernel/study_scene.h"
 #include "study/accuracy_probe.h"
 
 #include <QTest>
 
-#include <chrono>
 #include <cmath>
-#include <thread>
 
 using namespace diatom;
+using test::cantilever;
+using test::subjectOf;
 using test::Workbench;
 
 namespace {
-
-/// Twelve cells along y, clamped at the root, falling under gravity: first mode some 14 Hz.
-Workbench cantilever()
-{
-   Workbench bench;
-   Material fibre = test::material("fibre");
-   fibre.density = 3500;
-   fibre.youngsModulus = 5e5;
-   bench.add(fibre);
-   for (std::int32_t y = 0; y < 12; ++y)
-      bench.put("fibre", {{0, y, 0}});
-   bench.setup.supports = {{Index{0, 0, 0}, 0x3f}};
-   bench.setup.gravity = {0, 0, -9.8};
-   return bench;
-}
-
-Subject subjectOf(const Workbench &bench)
-{
-   return {test::catalogue(), std::make_shared<const Hierarchy>(bench.hierarchy()), bench.setup};
-}
 
 Quantity quantity(const char *text)
 {
@@ -235,16 +215,11 @@ void StudyProbeTest::theProbeStopsSoonAfterACancel()
 {
    const Workbench bench = cantilever();
    const Subject subject = subjectOf(bench);
-   Job job;
+   Job job([&](double, std::string_view) { job.cancel(); }); // as soon as it is at work
    ProbeRequest request;
    request.until = 1e5;
    request.budget = 1e4; // hours, were it not for the cancel
-   std::thread other([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      job.cancel();
-   });
    const auto probe = probeAccuracy(subject, request, job);
-   other.join();
    QVERIFY(!probe);
    QVERIFY(probe.error().code == ErrorCode::cancelled);
 }
