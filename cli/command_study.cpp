@@ -12,6 +12,7 @@ void addStudy(CLI::App &app, Context &context)
    study->require_subcommand(1);
    addStudyAccuracy(*study, context);
    addStudyEffects(*study, context);
+   addStudyStability(*study, context);
 }
 
 } // namespace diatom::cli

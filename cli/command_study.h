@@ -7,5 +7,6 @@ namespace diatom::cli {
 
 void addStudyAccuracy(CLI::App &study, Context &context);
 void addStudyEffects(CLI::App &study, Context &context);
+void addStudyStability(CLI::App &study, Context &context);
 
 } // namespace diatom::cli

@@ -21,11 +21,8 @@ struct EffectsOptions
 
 Status writeEffects(const EffectsStudy &study, const std::filesystem::path &folder)
 {
-   std::error_code failed;
-   std::filesystem::create_directories(folder, failed);
-   if (failed)
-      return Error{ErrorCode::unwritable,
-                   fmt::format("the folder {} cannot be made: {}", folder.string(), failed.message())};
+   if (const Status made = makeFolder(folder); !made)
+      return made;
    if (const Status table = writeFileAtomic(folder / "effects.csv", effectsCsv(study)); !table)
       return table;
    return writeFileAtomic(folder / "effects.json", effectsJson(study).dump(2) + "\n");

@@ -159,6 +159,16 @@ Status AtomicFile::commit()
    return {};
 }
 
+Status makeFolder(const std::filesystem::path &folder)
+{
+   std::error_code failed;
+   std::filesystem::create_directories(folder, failed);
+   if (failed)
+      return Error{ErrorCode::unwritable,
+                   fmt::format("the folder {} cannot be made: {}", folder.string(), failed.message())};
+   return {};
+}
+
 Status writeFileAtomic(const std::filesystem::path &path, std::string_view bytes)
 {
    AtomicFile file(path);

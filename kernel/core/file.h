@@ -46,6 +46,9 @@ private:
    std::string m_buffer, m_error;
 };
 
+/// Makes the folder and those above it where they are not there.
+Status makeFolder(const std::filesystem::path &folder);
+
 Status writeFileAtomic(const std::filesystem::path &path, std::string_view bytes);
 
 } // namespace diatom

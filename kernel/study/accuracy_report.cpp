@@ -151,11 +151,8 @@ Chart accuracyChart(const AccuracyStudy &study)
 
 Status writeAccuracy(AccuracyStudy &study, const std::filesystem::path &folder)
 {
-   std::error_code failed;
-   std::filesystem::create_directories(folder, failed);
-   if (failed)
-      return Error{ErrorCode::unwritable,
-                   fmt::format("the folder {} cannot be made: {}", folder.string(), failed.message())};
+   if (const Status made = makeFolder(folder); !made)
+      return made;
    if (!canPlot())
       study.notes.emplace_back("this build has no PLplot: there is no plot");
    else

@@ -70,6 +70,7 @@ private slots:
    void aBalanceThatIsNotFoundExitsWithSix();
    void theSolverOfOursBalancesACantilever();
    void modesPrintsFrequenciesAndKinds();
+   void theSolverOfOursFindsAChainsModes();
    void modesWritesShapes();
    void aSolverSaysWhatItCannotDo();
    void optionsReachTheSolver_data();
@@ -221,6 +222,32 @@ void SolveTest::modesPrintsFrequenciesAndKinds()
    QCOMPARE(modes[0].toObject()["kind"].toString(), QString("unstable"));
    QCOMPARE(modes[1].toObject()["kind"].toString(), QString("neutral"));
    QVERIFY2(run.err.contains("the balance is unstable"), run.err.constData());
+}
+
+void SolveTest::theSolverOfOursFindsAChainsModes()
+{
+   constexpr const char *kBar = R"({
+     "diatom": 1, "lattice": {"id": "org.diatom_cad.lattice.cube"},
+     "materials": [{"id": "a", "density_kg_m3": 1000, "youngs_modulus_Pa": 1e6, "poisson_ratio": 0.3}],
+     "assembly": {"cells": [["a", [0, 0, 0], [5, 1, 1]]]},
+     "simulation": {"supports": [{"cell": [0, 0, 0]}]}
+   })";
+   const Outcome run = diatomRuns({"modes", "-", "--json", "-n", "14"}, kBar);
+   QVERIFY2(run.exit == 0, run.err.constData());
+   const QJsonArray hertz = run.object()["hertz"].toArray();
+   QCOMPARE(hertz.size(), 14);
+   // Along its axis the bar is a chain of 4 masses, held at one end: 2 sqrt(k / m) sin((2 j - 1) pi / 18) with
+   // k = E l = 1000 N/m and m = 1 mg. The file's numbers and the solver's are good to 1e-10.
+   for (int j = 1; j <= 2; ++j) {
+      const double exact = std::sqrt(1000 / 1e-6) * std::sin((2 * j - 1) * M_PI / 18) / M_PI;
+      double nearest = 0;
+      for (const QJsonValue &one : hertz)
+         if (std::abs(one.toDouble() - exact) < std::abs(nearest - exact))
+            nearest = one.toDouble();
+      QVERIFY2(std::abs(nearest / exact - 1) < 1e-9, qPrintable(QString::number(nearest / exact - 1)));
+   }
+   // A square bar bends alike both ways.
+   QVERIFY(std::abs(hertz[1].toDouble() / hertz[0].toDouble() - 1) < 1e-9);
 }
 
 void SolveTest::modesWritesShapes()

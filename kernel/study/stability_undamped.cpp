@@ -1,0 +1,175 @@
+// Motion without damping: whatever the contrast or the speed, energy and momentum stay.
+#include "study/stability_cases.h"
+#include "study/stability_scenes.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace diatom::stability {
+
+namespace {
+
+/// A linear oscillator stepped by semi-implicit Euler or Verlet at the fraction a of its limit keeps
+/// v^2 + w^2 x^2 - 2 a w x v to rounding, so that its energy swings by at most this factor (c07-conservation
+/// of the validation cases).
+double swing(double ofLimit) { return (1 + ofLimit) / (1 - ofLimit); }
+
+/// The energy of a scene is a sum over modes, of which only the fastest come near that factor.
+void checkEnergy(const Course &course, double ofLimit, double secular, StabilityRow &row)
+{
+   row.checks.push_back({"most energy over that at the start", course.mostEnergy / course.firstTenth,
+                         swing(ofLimit), "a mode at this fraction of its limit swings so far"});
+   row.checks.push_back(
+       {"mean energy, last tenth against first", std::abs(course.lastTenth / course.firstTenth - 1), secular,
+        "as asked of long runs; at larger steps the swing of fast modes is part of the mean"});
+}
+
+void checkMomentum(const Course &course, StabilityRow &row)
+{
+   // Sums of so many rounded forces, each at most 2^-53 of the largest, add up as a random walk.
+   const double rounding =
+       1e-15 * std::sqrt(static_cast<double>(course.steps)) * std::sqrt(static_cast<double>(course.cells));
+   row.checks.push_back(
+       {"change of linear momentum", course.linear, 10 * rounding, "rounding of the forces"});
+   row.checks.push_back({"change of angular momentum", course.angular, 100 * rounding,
+                         "rounding of forces times distances; second order in the step where it is drift"});
+}
+
+struct Undamped
+{
+   Settings settings;
+   std::int64_t brief = 4000, full = 100'000;
+   double secular = 1e-2;
+   bool dense = false;
+   bool free = true;
+};
+
+Case undamped(const char *id, const std::string &scene, const std::function<Design(const Bench &)> &design,
+              const Undamped &how)
+{
+   return {id, scene, [design, how](const Bench &bench, StabilityRow &row) -> Status {
+              const auto course = follow(bench, design(bench), how.settings, bench.steps(how.brief, how.full),
+                                         400, how.dense);
+              if (!course)
+                 return course.error();
+              tell(*course, how.settings, row);
+              checkEnergy(*course, how.settings.ofLimit, how.secular, row);
+              if (how.free)
+                 checkMomentum(*course, row);
+              return {};
+           }};
+}
+
+Design contrast(double ratio)
+{
+   const Index size{12, 2, 2};
+   Material soft = rubber(), hard = rubber();
+   hard.id = hard.name = "hard";
+   hard.youngsModulus *= ratio;
+   Design design = halves(size, soft, hard);
+   shake(design, size, 1e-2 * soundSpeed(soft), 1);
+   return design;
+}
+
+Design heavy(double ratio)
+{
+   const Index size{12, 2, 2};
+   Material light = rubber(), heavy = rubber();
+   heavy.id = heavy.name = "heavy";
+   heavy.density *= ratio;
+   Design design = halves(size, light, heavy);
+   shake(design, size, 1e-2 * soundSpeed(light), 2);
+   return design;
+}
+
+} // namespace
+
+std::vector<Case> undampedCases()
+{
+   std::vector<Case> cases;
+   for (const double ratio : {1.0, 1e3, 1e6})
+      cases.push_back(undamped(ratio == 1     ? "stiffness-1"
+                               : ratio == 1e3 ? "stiffness-1e3"
+                                              : "stiffness-1e6",
+                               fmt::format("free bar of halves 1 : {:g} in stiffness, shaken", ratio),
+                               [ratio](const Bench &) { return contrast(ratio); }, {}));
+   cases.push_back(undamped("mass-1e6", "free bar of halves 1 : 10^6 in mass, shaken",
+                            [](const Bench &) { return heavy(1e6); }, {}));
+   cases.push_back(undamped("metals", "free bar, half steel, half aluminium, cells of 1 mm, shaken at 1 m/s",
+                            [](const Bench &) {
+                               Design design = halves({12, 2, 2}, steel(), aluminium());
+                               shake(design, {12, 2, 2}, 1, 3);
+                               return design;
+                            },
+                            {}));
+   const auto shaken = [](const Bench &) {
+      // Small, so that modes stay modes: what they exchange at large turns is physics, not drift.
+      Design design = block({6, 2, 2}, rubber());
+      shake(design, {6, 2, 2}, 1e-4 * soundSpeed(rubber()), 4);
+      return design;
+   };
+   for (const char *integrator : {"semi_implicit", "verlet"}) {
+      Undamped how{{integrator, 0.5}, 100'000, 1'000'000, 1e-4, true, true};
+      cases.push_back(undamped(*integrator == 's' ? "long-semi-implicit" : "long-verlet",
+                               "free bar, shaken, many steps", shaken, how));
+   }
+   cases.push_back(undamped("kick", "held block, its free half kicked across at 0.05 of the speed of sound",
+                            [](const Bench &) {
+                               Design design = block({8, 4, 4}, rubber());
+                               hold(design, layer({8, 4, 4}, 0, 0));
+                               kick(design, {8, 4, 4}, 0.05 * soundSpeed(rubber()));
+                               return design;
+                            },
+                            {{"semi_implicit", 0.9}, 4000, 100'000, 5e-2, false, false}));
+   cases.push_back(undamped("spin", "free cube, its rim at 0.2 of the speed of sound",
+                            [](const Bench &) {
+                               Design design = block({5, 5, 5}, rubber());
+                               spin(design, {5, 5, 5}, 0.2 * soundSpeed(rubber()) / (2.5 * kPitch));
+                               return design;
+                            },
+                            {{"semi_implicit", 0.9}, 4000, 100'000, 1e-2, false, true}));
+   cases.push_back(undamped("released-beam",
+                            "beam of 40 cells, held at one end, let go from an arc of 60 degrees",
+                            [](const Bench &) {
+                               Design design = block({40, 1, 1}, rubber());
+                               hold(design, layer({40, 1, 1}, 0, 0));
+                               bendToArc(design, 40, 1.0471975511965976);
+                               return design;
+                            },
+                            {{"semi_implicit", 0.9}, 4000, 100'000, 5e-2, false, false}));
+   cases.push_back(undamped("folded", "free bar of 24 cells, let go from an arc of 270 degrees",
+                            [](const Bench &) {
+                               Design design = block({24, 1, 1}, rubber());
+                               bendToArc(design, 24, 4.71238898038469);
+                               return design;
+                            },
+                            {{"semi_implicit", 0.5}, 4000, 100'000, 5e-2, false, true}));
+   cases.push_back(undamped("dense-block",
+                            "held block of 28^3 cells (brief: 10^3), its free half kicked across",
+                            [](const Bench &bench) {
+                               const std::int32_t n = bench.edge(10, 28);
+                               Design design = block({n, n, n}, rubber());
+                               hold(design, layer({n, n, n}, 0, 0));
+                               kick(design, {n, n, n}, 0.01 * soundSpeed(rubber()));
+                               return design;
+                            },
+                            {{"semi_implicit", 0.9}, 1000, 20'000, 5e-2, false, false}));
+   cases.push_back({"runge-kutta", "free bar, shaken: the fourth order may lose energy, never gain any",
+                    [shaken](const Bench &bench, StabilityRow &row) -> Status {
+                       const Settings settings{"rk4", 0.5};
+                       const auto course =
+                           follow(bench, shaken(bench), settings, bench.steps(4000, 100'000), 400);
+                       if (!course)
+                          return course.error();
+                       tell(*course, settings, row);
+                       row.checks.push_back({"most energy over that at the start, less 1",
+                                             course->mostEnergy / (course->start.kinetic) - 1, 1e-9,
+                                             "damps every mode below its limit"});
+                       checkMomentum(*course, row);
+                       return {};
+                    }});
+   return cases;
+}
+
+} // namespace diatom::stability
