@@ -57,6 +57,10 @@ public:
    }
    void finish()
    {
+      const Energy &end = m_course.end;
+      const double through = std::max(end.dissipated, m_course.mostEnergy);
+      const double balance = stored(end) + end.dissipated - end.work - stored(m_course.start);
+      m_course.unaccounted = through > 0 ? std::abs(balance) / through : 0;
       const double kinetic = m_course.mostKinetic;
       m_course.linear = kinetic > 0 ? m_linear / m_scale.linear(kinetic) : 0;
       m_course.angular = kinetic > 0 ? m_angular / m_scale.angular(kinetic) : 0;

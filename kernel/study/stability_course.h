@@ -35,13 +35,14 @@ struct Settings
 struct Course
 {
    std::int64_t cells = 0, steps = 0;
-   double step = 0, time = 0;            // s
-   double mass = 0;                      // kg
-   Energy start, end;                    //
-   double mostEnergy = 0;                // J, stored less the gravity at the start
-   double mostKinetic = 0;               // J
-   double drift = 0;                     // largest |Energy::drift|
-   double linear = 0, angular = 0;       // largest change of momentum, over what the motion has to give
+   double step = 0, time = 0;      // s
+   double mass = 0;                // kg
+   Energy start, end;              //
+   double mostEnergy = 0;          // J, stored less the gravity at the start
+   double mostKinetic = 0;         // J
+   double drift = 0;               // largest |Energy::drift|
+   double unaccounted = 0;         // at the end: energy that came from nowhere, over all that went through
+   double linear = 0, angular = 0; // largest change of momentum, over what the motion has to give
    double firstTenth = 0, lastTenth = 0; // J: mean stored energy there
    std::optional<Error> stopped;         // by divergence
    std::int64_t lost = 0;                // steps from the last good state to the stop

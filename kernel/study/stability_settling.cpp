@@ -83,19 +83,19 @@ std::vector<Case> settlingCases()
    cases.push_back(settled("heavy-damping", "held block under gravity, damping ratio 5", 5, 6, 12, 20'000));
    cases.push_back(asInTheThesis("thesis-explosion-3", 3));
    cases.push_back(asInTheThesis("thesis-explosion-4", 4));
-   cases.push_back({"square-wave", "row of actuators between walls, switched by a square wave",
-                    [](const Bench &bench, StabilityRow &row) -> Status {
-                       const Design design =
-                           drivenRow(8, Waveform::square, 200, 0.05, stuff("muscle", 1200, 2e6, 0.05));
-                       const Settings settings{"semi_implicit", 0.9};
-                       const auto course = follow(bench, design, settings, bench.steps(20'000, 200'000), 400);
-                       if (!course)
-                          return course.error();
-                       tell(*course, settings, row);
-                       row.checks.push_back(
-                           driftCheck(*course, 5e-2, "first order in the step, however sudden the switch"));
-                       return {};
-                    }});
+   cases.push_back(
+       {"square-wave", "row of actuators between walls, switched by a square wave",
+        [](const Bench &bench, StabilityRow &row) -> Status {
+           const Design design = drivenRow(8, Waveform::square, 200, 0.05, stuff("muscle", 1200, 2e6, 0.05));
+           const Settings settings{"semi_implicit", 0.5};
+           const auto course = follow(bench, design, settings, bench.steps(20'000, 200'000), 400);
+           if (!course)
+              return course.error();
+           tell(*course, settings, row);
+           row.checks.push_back({"energy unaccounted for, over all that went through", course->unaccounted,
+                                 5e-2, "second order in the step: every switch shakes the fastest modes"});
+           return {};
+        }});
    cases.push_back({"hard-stops", "actuators of aluminium that push 1 % against held ends of aluminium",
                     [](const Bench &bench, StabilityRow &row) -> Status {
                        Material muscle = aluminium();

@@ -10,6 +10,8 @@ namespace diatom::stability {
 
 namespace {
 
+constexpr double kSmall = 1e-4; // of the speed of sound: also the strains, roughly
+
 /// A linear oscillator stepped by semi-implicit Euler or Verlet at the fraction a of its limit keeps
 /// v^2 + w^2 x^2 - 2 a w x v to rounding, so that its energy swings by at most this factor (c07-conservation
 /// of the validation cases).
@@ -18,8 +20,9 @@ double swing(double ofLimit) { return (1 + ofLimit) / (1 - ofLimit); }
 /// The energy of a scene is a sum over modes, of which only the fastest come near that factor.
 void checkEnergy(const Course &course, double ofLimit, double secular, StabilityRow &row)
 {
-   row.checks.push_back({"most energy over that at the start", course.mostEnergy / course.firstTenth,
-                         swing(ofLimit), "a mode at this fraction of its limit swings so far"});
+   row.checks.push_back({"most energy over its mean in the first tenth",
+                         course.mostEnergy / course.firstTenth, swing(ofLimit),
+                         "a mode at this fraction of its limit swings so far"});
    row.checks.push_back(
        {"mean energy, last tenth against first", std::abs(course.lastTenth / course.firstTenth - 1), secular,
         "as asked of long runs; at larger steps the swing of fast modes is part of the mean"});
@@ -79,7 +82,12 @@ Design heavy(double ratio)
    heavy.id = heavy.name = "heavy";
    heavy.density *= ratio;
    Design design = halves(size, light, heavy);
+   // Each half at a hundredth of its own speed of sound: strains of a few per cent in both.
    shake(design, size, 1e-2 * soundSpeed(light), 2);
+   for (Start &start : design.setup.starts)
+      if (std::get<Index>(start.where).x >= size.x / 2)
+         for (double &speed : start.velocity)
+            speed /= std::sqrt(ratio);
    return design;
 }
 
@@ -106,7 +114,7 @@ std::vector<Case> undampedCases()
    const auto shaken = [](const Bench &) {
       // Small, so that modes stay modes: what they exchange at large turns is physics, not drift.
       Design design = block({6, 2, 2}, rubber());
-      shake(design, {6, 2, 2}, 1e-4 * soundSpeed(rubber()), 4);
+      shake(design, {6, 2, 2}, kSmall * soundSpeed(rubber()), 4);
       return design;
    };
    for (const char *integrator : {"semi_implicit", "verlet"}) {
@@ -155,20 +163,24 @@ std::vector<Case> undampedCases()
                                return design;
                             },
                             {{"semi_implicit", 0.9}, 1000, 20'000, 5e-2, false, false}));
-   cases.push_back({"runge-kutta", "free bar, shaken: the fourth order may lose energy, never gain any",
-                    [shaken](const Bench &bench, StabilityRow &row) -> Status {
-                       const Settings settings{"rk4", 0.5};
-                       const auto course =
-                           follow(bench, shaken(bench), settings, bench.steps(4000, 100'000), 400);
-                       if (!course)
-                          return course.error();
-                       tell(*course, settings, row);
-                       row.checks.push_back({"most energy over that at the start, less 1",
-                                             course->mostEnergy / (course->start.kinetic) - 1, 1e-9,
-                                             "damps every mode below its limit"});
-                       checkMomentum(*course, row);
-                       return {};
-                    }});
+   cases.push_back(
+       {"runge-kutta", "free bar, shaken: the fourth order may lose energy, never gain any",
+        [shaken](const Bench &bench, StabilityRow &row) -> Status {
+           const Settings settings{"rk4", 0.5};
+           const auto course = follow(bench, shaken(bench), settings, bench.steps(4000, 100'000), 400);
+           if (!course)
+              return course.error();
+           tell(*course, settings, row);
+           row.checks.push_back({"most energy over that at the start, less 1",
+                                 course->mostEnergy / (course->start.kinetic) - 1, 1e-9,
+                                 "damps every mode below its limit"});
+           row.checks.push_back({"change of linear momentum", course->linear, 1e-12,
+                                 "rounding: every stage's forces balance"});
+           row.checks.push_back({"change of angular momentum", course->angular, kSmall,
+                                 "products of places and speeds are not kept by this method: below "
+                                 "the strains at work"});
+           return {};
+        }});
    return cases;
 }
 
