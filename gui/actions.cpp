@@ -56,6 +56,8 @@ constexpr ActionInfo kTable[] = {
      TR("Stop the simulation and return to rest")},
     {"simulate.colour", "-simulate", TR("&Colour by Displacement"), "C",
      TR("Show how far each cell has moved"), kToggle},
+    {"simulate.panel", "-simulate", TR("&Simulation Panel"), "F8",
+     TR("Show which effects are simulated and what accuracy costs"), kToggle},
 
     {"help.keys", "help", TR("&Keys"), "F1", TR("List all keys")},
     {"help.about", "help", TR("&About Diatom"), "", TR("Version and licence")}};

@@ -111,6 +111,13 @@ QIcon actionIcon(std::string_view id)
          triangle(p, ink, 18, 8);
          p.drawLine(QPointF(6, 5), QPointF(6, 19));
       });
+   if (id == "simulate.panel") // a dial
+      return icon([](QPainter &p, const QColor &ink) {
+         p.drawArc(QRectF(3, 4, 18, 18), -30 * 16, 240 * 16);
+         p.drawLine(QPointF(12, 13), QPointF(17, 8));
+         p.setBrush(ink);
+         p.drawEllipse(QPointF(12, 13), 1.6, 1.6);
+      });
    return {};
 }
 

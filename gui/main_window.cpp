@@ -4,10 +4,7 @@
 #include <QDockWidget>
 #include <QLabel>
 #include <QLocale>
-#include <QMenuBar>
 #include <QMessageBox>
-#include <QStatusBar>
-#include <QToolBar>
 #include <QVBoxLayout>
 
 #include <algorithm>
@@ -41,14 +38,7 @@ MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *se
        "background: rgba(255,255,255,205); color: #1e242c; border-radius: 5px; padding: 4px 8px;"));
    m_hint->hide();
 
-   m_hotbar = new Hotbar(&m_session, this);
-   auto *dock = new QDockWidget(tr("Materials"), this);
-   dock->setObjectName(QStringLiteral("materialsDock"));
-   dock->setFeatures(
-       QDockWidget::DockWidgetMovable); // floating docks cannot be put back on Wayland (QTBUG-87332)
-   dock->setWidget(m_hotbar);
-   addDockWidget(Qt::RightDockWidgetArea, dock);
-
+   makeDocks();
    makeMenus();
    makeToolColumn();
    makeStatusBar();
@@ -59,6 +49,7 @@ MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *se
    if (m_settings) {
       restoreGeometry(m_settings->value("window/geometry").toByteArray());
       restoreState(m_settings->value("window/state").toByteArray(), kLayoutVersion);
+      m_panel->setCurrentIndex(m_settings->value("simulationPanel/page", 0).toInt());
    }
    updateActions();
    updateCounts();
@@ -66,116 +57,7 @@ MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *se
    m_viewport->setFocus();
 }
 
-MainWindow::~MainWindow() { m_player.disconnect(this); }
-
-void MainWindow::makeMenus()
-{
-   struct Menu
-   {
-      const char *id;
-      QString title;
-   };
-   for (const auto &[id, title] :
-        {Menu{"file", tr("&File")}, Menu{"edit", tr("&Edit")}, Menu{"view", tr("&View")},
-         Menu{"simulate", tr("&Simulate")}, Menu{"help", tr("&Help")}})
-   {
-      QMenu *menu = menuBar()->addMenu(title);
-      menu->setObjectName(QStringLiteral("menu.%1").arg(QString::fromUtf8(id)));
-      menu->setToolTipsVisible(true);
-      if (std::string_view(id) == "file") {
-         makeNewMenu(menu);
-         makeSamplesMenu(menu);
-      }
-      m_actions.addTo(menu, id);
-   }
-}
-
-void MainWindow::makeNewMenu(QMenu *file)
-{
-   QMenu *menu = file->addMenu(tr("&New"));
-   menu->setObjectName(QStringLiteral("menu.new"));
-   bool first = true;
-   for (const Offer &offer : m_session.catalogue()->offers(DIATOM_LATTICE_1)) {
-      const std::string id = offer.provided->id;
-      QAction *action = menu->addAction(QString::fromStdString(offer.provided->name));
-      action->setObjectName(QStringLiteral("file.new.") + QString::fromStdString(id));
-      action->setToolTip(QString::fromStdString(offer.provided->summary));
-      if (first || id == LatticeSpec{}.id) {
-         for (QAction *other : menu->actions())
-            other->setShortcut({});
-         action->setShortcut(QKeySequence::New);
-      }
-      first = false;
-      connect(action, &QAction::triggered, this, [this, id] {
-         if (mayDiscard())
-            m_session.newDesign(id);
-      });
-   }
-}
-
-void MainWindow::makeSamplesMenu(QMenu *file)
-{
-   QMenu *menu = file->addMenu(tr("Sa&mples"));
-   menu->setObjectName(QStringLiteral("menu.samples"));
-   for (const auto &folder : sampleFolders()) {
-      std::error_code error;
-      std::vector<std::filesystem::path> files;
-      for (const auto &entry : std::filesystem::directory_iterator(folder, error))
-         if (entry.path().extension() == ".diatom")
-            files.push_back(entry.path());
-      std::sort(files.begin(), files.end());
-      for (const auto &path : files) {
-         QString name = QString::fromStdString(path.stem().string());
-         name.replace(QLatin1Char('_'), QLatin1Char(' ')).replace(QLatin1Char('-'), QLatin1Char(' '));
-         name[0] = name[0].toUpper();
-         QAction *action = menu->addAction(name);
-         action->setObjectName(QStringLiteral("file.sample.") + QString::fromStdString(path.stem().string()));
-         action->setToolTip(tr("Open the sample %1").arg(name));
-         connect(action, &QAction::triggered, this, [this, path] {
-            if (mayDiscard())
-               open(path);
-         });
-      }
-      if (!files.empty())
-         break;
-   }
-   menu->setEnabled(!menu->isEmpty());
-}
-
-void MainWindow::makeToolColumn()
-{
-   auto *bar = new QToolBar(tr("Tools"), this);
-   bar->setObjectName(QStringLiteral("toolColumn"));
-   bar->setIconSize({26, 26});
-   for (const char *id : {"tool.place", "tool.erase", "tool.paint", "tool.pick"})
-      bar->addAction(m_actions[id]);
-   bar->addSeparator();
-   bar->addAction(m_actions["simulate.play"]);
-   bar->addAction(m_actions["simulate.reset"]);
-   addToolBar(Qt::LeftToolBarArea, bar);
-   m_actions["tool.place"]->setChecked(true);
-   m_actions["view.grid"]->setChecked(true);
-   m_actions["simulate.colour"]->setChecked(true);
-}
-
-void MainWindow::makeStatusBar()
-{
-   const auto label = [this](const char *name, const QString &meaning) {
-      auto *made = new QLabel(this);
-      made->setObjectName(QString::fromUtf8(name));
-      made->setToolTip(meaning);
-      return made;
-   };
-   m_address = label("status.address", tr("Cell and port under the pointer"));
-   m_counts = label("status.counts", tr("Cells and materials of the design"));
-   m_run = label("status.run", tr("Simulated time, and how it compares with real time"));
-   m_speed = label("status.speed", tr("Time to draw the last picture"));
-   m_task = new TaskRow(this);
-   statusBar()->addWidget(m_address, 1);
-   for (QWidget *widget : {static_cast<QWidget *>(m_task), static_cast<QWidget *>(m_counts),
-                           static_cast<QWidget *>(m_run), static_cast<QWidget *>(m_speed)})
-      statusBar()->addPermanentWidget(widget);
-}
+MainWindow::~MainWindow() { m_player.disconnect(); }
 
 void MainWindow::on(std::string_view action, std::function<void()> act)
 {
@@ -213,6 +95,13 @@ void MainWindow::connectActions()
    on("simulate.play", [this] { togglePlay(); });
    on("simulate.reset", [this] { m_player.reset(); });
    on("simulate.colour", [this] { showFrame(); });
+   on("simulate.panel", [this] {
+      m_panelDock->setVisible(m_actions["simulate.panel"]->isChecked());
+      if (m_panelDock->isVisible())
+         m_panel->setFocus();
+      else
+         m_viewport->setFocus();
+   });
    on("help.keys", [this] { showKeys(); });
    on("help.about", [this] { showAbout(); });
 }
@@ -229,6 +118,10 @@ void MainWindow::connectViews()
       updateCounts();
    });
    connect(&m_session, &Session::fileChanged, this, &MainWindow::updateActions);
+   connect(m_panelDock, &QDockWidget::visibilityChanged, this,
+           [this] { m_actions["simulate.panel"]->setChecked(!m_panelDock->isHidden()); });
+   connect(m_panel, &SimulationPanel::failed, this, showError);
+   connect(m_panel, &SimulationPanel::evidenceChosen, m_viewport, &Viewport::setHighlight);
    connect(m_viewport, &Viewport::failed, this, showError);
    connect(m_viewport, &Viewport::playWanted, this, &MainWindow::togglePlay);
    connect(m_viewport, &Viewport::hoverChanged, this, [this] {
@@ -323,7 +216,9 @@ void MainWindow::updateRun()
    QString text = tr("t %1 s").arg(frame->frame.time, 0, 'f', 3);
    text +=
        frame->realTimeFactor > 0 ? tr(", %1x real time").arg(frame->realTimeFactor, 0, 'g', 3) : QString();
-   m_run->setText(m_player.playing() ? text : text + tr(", paused"));
+   m_run->setText(m_player.playing()    ? text
+                  : m_player.finished() ? text + tr(", finished")
+                                        : text + tr(", paused"));
 }
 
 void MainWindow::placeOverlays()
@@ -357,6 +252,7 @@ void MainWindow::closeEvent(QCloseEvent *event)
    if (m_settings) {
       m_settings->setValue("window/geometry", saveGeometry());
       m_settings->setValue("window/state", saveState(kLayoutVersion));
+      m_settings->setValue("simulationPanel/page", m_panel->currentIndex());
    }
    event->accept();
 }

@@ -7,6 +7,7 @@
 #include "gui/legend_widget.h"
 #include "gui/message_bar.h"
 #include "gui/session.h"
+#include "gui/simulation_panel.h"
 #include "gui/simulation_player.h"
 #include "gui/task_row.h"
 #include "gui/viewport.h"
@@ -17,6 +18,7 @@
 #include <filesystem>
 #include <string_view>
 
+class QDockWidget;
 class QLabel;
 
 namespace diatom::gui {
@@ -50,6 +52,7 @@ private:
    void makeNewMenu(QMenu *file);
    void makeSamplesMenu(QMenu *file);
    void makeToolColumn();
+   void makeDocks();
    void makeStatusBar();
    void connectActions();
    void connectViews();
@@ -78,6 +81,8 @@ private:
    MessageBar *m_messages;
    Viewport *m_viewport;
    Hotbar *m_hotbar;
+   SimulationPanel *m_panel;
+   QDockWidget *m_panelDock;
    LegendWidget *m_legend;
    QLabel *m_hint;
    QLabel *m_address, *m_counts, *m_run, *m_speed;

@@ -58,13 +58,19 @@ bool Session::save(const std::filesystem::path &file)
 
 bool Session::run(const char *command, const nlohmann::json &arguments)
 {
+   const QString fault = tryRun(command, arguments);
+   if (!fault.isEmpty())
+      emit failed(fault);
+   return fault.isEmpty();
+}
+
+QString Session::tryRun(const char *command, const nlohmann::json &arguments)
+{
    const Job job;
-   if (const Status status = m_document->run(command, arguments, job); !status) {
-      emit failed(QString::fromStdString(status.error().message));
-      return false;
-   }
+   if (const Status status = m_document->run(command, arguments, job); !status)
+      return QString::fromStdString(status.error().message);
    refresh();
-   return true;
+   return {};
 }
 
 void Session::undo()

@@ -45,6 +45,8 @@ public:
    bool save(const std::filesystem::path &file);
    /// False, with failed() raised, when nothing was changed.
    bool run(const char *command, const nlohmann::json &arguments);
+   /// For who shows faults himself: the sentence when nothing was changed, else "".
+   QString tryRun(const char *command, const nlohmann::json &arguments);
    void undo();
    void redo();
 

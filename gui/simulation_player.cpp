@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 
 namespace diatom::gui {
 
@@ -16,6 +18,16 @@ double since(Clock::time_point begin) { return std::chrono::duration<double>(Clo
 
 constexpr double kFrameSeconds = 1.0 / 60; // between frames, and the most simulated in one go
 constexpr double kSliceSeconds = 0.008;    // of wall time aimed at, so that pause and cancel act at once
+
+/// Whole steps: as many as fit into the slice, at least one. Shorter by a billionth, so that sums of steps do
+/// not round to one step more.
+double sliceEnd(const Simulation &simulation, double slice, double end)
+{
+   const double step = simulation.step();
+   const double whole =
+       step > 0 ? std::max(1.0, std::floor(slice / step * (1 + 1e-9))) * step * (1 - 1e-9) : slice;
+   return std::min(simulation.time() + whole, end);
+}
 
 } // namespace
 
@@ -31,8 +43,10 @@ struct SimulationPlayer::Run
    std::condition_variable wake;
    bool playing = true;                         // guarded
    std::shared_ptr<const render::Moment> frame; // guarded
+   RunTally tally;                              // guarded
    bool taken = true;                           // guarded: the frame was looked at since it was put
    std::function<void()> announce;              // tells the window that there is a frame
+   std::function<void()> announceEnd;
 
    std::shared_ptr<const std::vector<Index>> indices;
    std::vector<double> rest;
@@ -69,6 +83,7 @@ Status SimulationPlayer::Run::publish(const Simulation &simulation, double facto
    made->realTimeFactor = factor;
    const std::lock_guard lock(mutex);
    frame = std::move(made);
+   tally = {simulation.time(), simulation.step(), simulation.wallSeconds(), simulation.steps()};
    if (taken) // else the window is still busy with an earlier word, and will find this frame then
       announce();
    taken = false;
@@ -92,6 +107,7 @@ Status SimulationPlayer::Run::work()
 Status SimulationPlayer::Run::play(Simulation &simulation)
 {
    double slice = 1e-4, factor = 0;
+   const double end = design.setup.until > 0 ? design.setup.until : std::numeric_limits<double>::infinity();
    while (wait()) {
       const auto resumed = Clock::now();
       const double from = simulation.time();
@@ -104,17 +120,22 @@ Status SimulationPlayer::Run::play(Simulation &simulation)
       };
       while (stillPlaying()) {
          const auto begin = Clock::now();
-         if (Status status = simulation.advance(simulation.time() + slice, job); !status) {
+         if (Status status = simulation.advance(sliceEnd(simulation, slice, end), job); !status) {
             if (Status last = publish(simulation, factor); !last) // the last good state stays on screen
                return last;
             return status;
          }
          slice = std::clamp(slice * std::clamp(kSliceSeconds / std::max(since(begin), 1e-6), 0.5, 2.0),
-                            simulation.step(), kFrameSeconds);
+                            simulation.step(), std::max(kFrameSeconds, simulation.step()));
          if (since(measured) > 0.5) {
             factor = (simulation.time() - measuredFrom) / since(measured);
             measured = Clock::now();
             measuredFrom = simulation.time();
+         }
+         if (simulation.time() >= end) {
+            const std::lock_guard lock(mutex);
+            playing = false;
+            break;
          }
          const bool due = since(lastFrame) >= kFrameSeconds;
          if (due) {
@@ -132,6 +153,10 @@ Status SimulationPlayer::Run::play(Simulation &simulation)
       }
       if (Status status = publish(simulation, factor); !status)
          return status;
+      if (simulation.time() >= end) {
+         announceEnd();
+         return {};
+      }
    }
    return {};
 }
@@ -149,10 +174,18 @@ std::shared_ptr<const render::Moment> SimulationPlayer::frame() const
    return m_run->frame;
 }
 
+RunTally SimulationPlayer::tally() const
+{
+   if (!m_run)
+      return {};
+   const std::lock_guard lock(m_run->mutex);
+   return m_run->tally;
+}
+
 void SimulationPlayer::play(std::shared_ptr<const Catalogue> catalogue, const Design &design,
                             std::shared_ptr<const Hierarchy> hierarchy)
 {
-   if (m_thread && m_thread->isFinished()) // it failed: once more from the start
+   if (m_finished || (m_thread && m_thread->isFinished())) // it ended or failed: once more from the start
       reset();
    m_playing = true;
    if (m_run) {
@@ -172,6 +205,15 @@ void SimulationPlayer::play(std::shared_ptr<const Catalogue> catalogue, const De
              [this, number] {
                 if (m_run && number == m_number)
                    emit frameReady();
+             },
+             Qt::QueuedConnection);
+      };
+      run->announceEnd = [this, number = m_number] {
+         QMetaObject::invokeMethod(
+             this,
+             [this, number] {
+                if (m_run && number == m_number)
+                   finish();
              },
              Qt::QueuedConnection);
       };
@@ -211,8 +253,16 @@ void SimulationPlayer::fail(const QString &message)
    emit stateChanged();
 }
 
+void SimulationPlayer::finish()
+{
+   m_playing = false;
+   m_finished = true;
+   emit stateChanged();
+}
+
 void SimulationPlayer::reset()
 {
+   m_finished = false;
    if (!m_thread)
       return;
    {

@@ -22,6 +22,15 @@ class QThread;
 
 namespace diatom::gui {
 
+/// What a run has done so far.
+struct RunTally
+{
+   double time = 0;        // s, simulated
+   double step = 0;        // s, in use
+   double wallSeconds = 0; // spent stepping
+   std::int64_t steps = 0;
+};
+
 class SimulationPlayer : public QObject
 {
    Q_OBJECT
@@ -32,9 +41,14 @@ public:
 
    bool active() const { return m_thread != nullptr; } // a run exists, playing or paused
    bool playing() const { return m_playing; }
+   /// The run came to the end that the design asks for.
+   bool finished() const { return m_finished; }
    /// The newest frame; null before the first.
    std::shared_ptr<const render::Moment> frame() const;
+   /// As of the newest frame; all 0 before the first.
+   RunTally tally() const;
 
+   /// Goes on, or starts: anew after the end.
    void play(std::shared_ptr<const Catalogue> catalogue, const Design &design,
              std::shared_ptr<const Hierarchy> hierarchy);
    void pause();
@@ -49,11 +63,12 @@ signals:
 private:
    struct Run;
    void fail(const QString &message);
+   void finish();
 
    std::shared_ptr<Run> m_run;
    QThread *m_thread = nullptr;
    int m_number = 0; // of the run
-   bool m_playing = false;
+   bool m_playing = false, m_finished = false;
 };
 
 } // namespace diatom::gui

@@ -31,9 +31,12 @@ public:
    void setGrid(bool on);
    /// Null: at rest.
    void showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement);
+   /// Cells to outline until others are, or the design changes.
+   void setHighlight(std::vector<Index> cells);
 
    // For tests and the status bar; read only.
    const Ghost &ghost() const { return m_builder->ghost(); }
+   const std::vector<Index> &highlight() const { return m_highlight; }
    quint64 frameId() const { return m_frameId; }
    /// Where a cell's centre, or the middle of one of its ports, appears; nothing when behind the eye.
    std::optional<QPointF> screenPos(Index cell) const;
@@ -66,9 +69,12 @@ protected:
    void keyReleaseEvent(QKeyEvent *event) override;
 
 private:
+   static constexpr double kArrowPixels = 60; // the builder's arrow
+
    enum class Drag { none, waiting, orbit, pan, region, arrow, idle };
 
    void reload();
+   void addHighlight(render::Overlay &overlay) const;
    void updateReach();
    void startDrag(const QPointF &at);
    void dragTo(const QPointF &at);
@@ -89,6 +95,7 @@ private:
    Qt::KeyboardModifiers m_keys;
    QPointF m_pressed, m_last;
    Vec3 m_pivot = Vec3::Zero();
+   std::vector<Index> m_highlight;
    bool m_hierarchyView = false, m_grid = true, m_space = false, m_spaceUsed = false, m_fitWanted = true;
    bool m_moved = false; // a simulation is shown: no building
    quint64 m_frameId = 0;

@@ -80,6 +80,13 @@ Result<std::string> step(CommandContext &context, const nlohmann::json &argument
    return edit.commit("step");
 }
 
+Result<std::string> until(CommandContext &context, const nlohmann::json &arguments)
+{
+   Edit edit(context, "until", arguments);
+   edit.design().setup.until = edit.arguments().at("until_s").number(0, 1e9);
+   return edit.commit("length of run");
+}
+
 Result<std::string> effect(CommandContext &context, const nlohmann::json &arguments)
 {
    Edit edit(context, "effect", arguments);
@@ -134,6 +141,8 @@ Result<std::string> setSolver(CommandContext &context, const nlohmann::json &arg
 {
    Edit edit(context, "set-solver", arguments);
    choose(edit, edit.design().setup.solver, edit.design().setup.solverValues);
+   if (edit.arguments().has("step_s"))
+      edit.design().setup.step = edit.arguments().at("step_s").number(0, 1e6);
    return edit.commit("set solver");
 }
 
@@ -157,6 +166,7 @@ constexpr CommandParameter kGround[] = {
 };
 constexpr CommandParameter kDrag[] = {{"drag_1_s", "number", true, "slows all motion in proportion to mass"}};
 constexpr CommandParameter kStep[] = {{"step_s", "number", true, "0 = the solver's stable step"}};
+constexpr CommandParameter kUntil[] = {{"until_s", "number", true, "0 = until it is stopped"}};
 constexpr CommandParameter kEffect[] = {
     {"effect", "text", true, "name as `diatom effects` prints it"},
     {"forced", "text", true, "on, off, or auto to leave it to the planner"},
@@ -166,6 +176,11 @@ constexpr CommandParameter kChoice[] = {
     {"id", "text", false, "as `diatom plugins` prints it"},
     {"values", "object", false, "its parameters"},
 };
+constexpr CommandParameter kSolver[] = {
+    {"id", "text", false, "as `diatom plugins` prints it"},
+    {"values", "object", false, "its parameters"},
+    {"step_s", "number", false, "the time step along with them; 0 = the solver's stable step"},
+};
 
 constexpr Command kCommands[] = {
     {"source", "Set signal", "Sets what a source cell drives its wires with.", kSource, source},
@@ -174,8 +189,9 @@ constexpr Command kCommands[] = {
     {"ground", "Set ground", "Sets the plane that cells rest on.", kGround, ground},
     {"drag", "Set drag", "Sets how fast motion dies out by itself.", kDrag, drag},
     {"step", "Set time step", "Sets the step the design asks for.", kStep, step},
+    {"until", "Set length of run", "Sets the time that a run lasts.", kUntil, until},
     {"effect", "Force effect", "Forces an effect of the simulation on or off.", kEffect, effect},
-    {"set-solver", "Choose solver", "Chooses the solver and its parameters.", kChoice, setSolver},
+    {"set-solver", "Choose solver", "Chooses the solver and its parameters.", kSolver, setSolver},
     {"set-name", "Set name", "Names the design.", kName, setName},
     {"set-parts", "Choose parts", "Chooses what parts cells are made of.", kChoice, setParts},
     {"set-machine", "Choose machine", "Chooses the machine that assembles.", kChoice, setMachine},

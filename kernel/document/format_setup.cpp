@@ -147,6 +147,8 @@ ordered_json setupJson(const Setup &setup)
       json["ground"] = groundJson(setup.ground);
    json["drag_1_s"] = setup.drag;
    json["step_s"] = setup.step;
+   if (setup.until > 0)
+      json["until_s"] = setup.until;
    json["solver"] = {{"id", setup.solver}, {"values", valuesJson(setup.solverValues)}};
    for (const Reference &reference : setup.references)
       json["references"].push_back(
@@ -173,7 +175,7 @@ Setup readSetup(const JsonPlace &place, const Model &model)
    if (!place.object())
       return setup;
    place.known({"gravity_m_s2", "supports", "drives", "loads", "starts", "sources", "ground", "drag_1_s",
-                "step_s", "solver", "references", "effects"});
+                "step_s", "until_s", "solver", "references", "effects"});
    if (place.has("gravity_m_s2"))
       setup.gravity = place.at("gravity_m_s2").numbers3();
    setup.supports = readEntries(place, "supports", model, readSupport);
@@ -186,6 +188,7 @@ Setup readSetup(const JsonPlace &place, const Model &model)
       setup.ground = readGround(place.at("ground"), {});
    setup.drag = place.numberOr("drag_1_s", 0, 0, 1e9);
    setup.step = place.numberOr("step_s", 0, 0, 1e6);
+   setup.until = place.numberOr("until_s", 0, 0, 1e9);
    if (place.has("solver")) {
       const auto solver = place.at("solver");
       solver.known({"id", "values"});

@@ -125,8 +125,9 @@ struct Setup
    std::vector<Start> starts;
    std::vector<Source> sources;
    Ground ground;
-   double drag = 0; // 1/s: slows all motion in proportion to mass; for settling
-   double step = 0; // s the document asks for; 0 = the solver's stable step
+   double drag = 0;  // 1/s: slows all motion in proportion to mass; for settling
+   double step = 0;  // s the document asks for; 0 = the solver's stable step
+   double until = 0; // s that a run is to last; 0 = until it is stopped
    std::string solver = "org.diatom_cad.solver.bonds";
    Values solverValues;
    std::vector<Reference> references;

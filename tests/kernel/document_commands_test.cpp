@@ -90,6 +90,26 @@ private slots:
       QCOMPARE(cells(d), std::uint64_t{1});
    }
 
+   void aRunIsSetUpInOneStepEach()
+   {
+      auto d = start();
+      const auto before = d.design().hash();
+      DO("until", R"({"until_s": 2.5})");
+      QCOMPARE(d.design().setup.until, 2.5);
+      QCOMPARE(d.undoText(), std::string("length of run"));
+      REFUSED("until", R"({"until_s": -1})", "/until_s");
+      REFUSED("until", R"({"until_s": "soon"})", "/until_s");
+      DO("set-solver", R"({"values": {"integrator": "verlet"}, "step_s": 2e-6})");
+      QCOMPARE(std::get<std::string>(d.design().setup.solverValues.at("integrator")), std::string("verlet"));
+      QCOMPARE(d.design().setup.step, 2e-6);
+      REFUSED("set-solver", R"({"step_s": -2e-6})", "/step_s");
+      QVERIFY(d.undo()); // values and step together
+      QVERIFY(d.design().setup.solverValues.empty());
+      QCOMPARE(d.design().setup.step, 0.0);
+      QVERIFY(d.undo());
+      QVERIFY(d.design().hash() == before);
+   }
+
    void placingWhereSomethingIsFails()
    {
       auto d = start();

@@ -54,6 +54,19 @@ private slots:
       }
    }
 
+   void theLengthOfARunIsWrittenWhereItIsGiven()
+   {
+      Design design = boundary();
+      QVERIFY(writeDesign(design, false, Job())->find("until_s") == std::string::npos);
+      const Hash before = design.hash();
+      design.setup.until = 2.5;
+      QVERIFY(design.hash() != before);
+      const auto opened = read(*writeDesign(design, false, Job()));
+      DIATOM_VERIFY_OK(opened);
+      QVERIFY(opened->notes.empty());
+      QVERIFY(opened->design == design);
+   }
+
    void everyFieldOfTheSetUpTellsInTheHash()
    {
       const Hash whole = boundary().hash();
