@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace diatom::cli {
@@ -21,13 +22,15 @@ namespace diatom::cli {
 class Measure
 {
 public:
-   Measure(std::shared_ptr<const Catalogue> catalogue, bool quick)
-       : m_catalogue(std::move(catalogue)), m_quick(quick)
+   Measure(std::shared_ptr<const Catalogue> catalogue, bool quick, std::string_view name)
+       : m_catalogue(std::move(catalogue)), m_quick(quick), m_name(name)
    {}
 
    const std::shared_ptr<const Catalogue> &catalogue() const { return m_catalogue; }
    /// Smaller work, for a look in passing and for tests.
    bool quick() const { return m_quick; }
+   /// Of the benchmark, without its group.
+   std::string_view name() const { return m_name; }
    /// Runs the work `times` times (once when quick) and keeps every time.
    void time(int times, const std::function<void()> &work);
    /// How much one run did: `amount` of `unit` ("cells", "rays").
@@ -35,15 +38,21 @@ public:
    /// What came out, so that two measurements are known to be of the same thing.
    void result(const Hash &hash) { m_hash = hash; }
 
+   /// A figure of this group's own; a column of the table.
+   void also(std::string column, double value) { m_more.emplace_back(std::move(column), value); }
+
    double seconds() const;
    double rate() const;
    const std::string &unit() const { return m_unit; }
    std::uint64_t peakBytes() const { return m_peakBytes; }
    const Hash &hash() const { return m_hash; }
+   const std::vector<std::pair<std::string, double>> &more() const { return m_more; }
 
 private:
    std::shared_ptr<const Catalogue> m_catalogue;
    bool m_quick;
+   std::string_view m_name;
+   std::vector<std::pair<std::string, double>> m_more;
    std::vector<double> m_seconds;
    double m_amount = 0;
    std::string m_unit;
@@ -59,5 +68,12 @@ struct Benchmark
 };
 
 std::span<const Benchmark> cellBenchmarks();
+std::span<const Benchmark> mechanicsBenchmarks();
+
+/// Of this process, now; 0 where nothing tells.
+std::uint64_t residentBytes();
+
+/// What one core does at most, measured: 1e9 multiplications and additions a second.
+double peakGflops(bool single);
 
 } // namespace diatom::cli

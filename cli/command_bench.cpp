@@ -25,6 +25,7 @@ struct Group
 
 constexpr Group kGroups[] = {
     {"cells", cellBenchmarks},
+    {"mechanics", mechanicsBenchmarks},
 };
 
 struct Options
@@ -76,22 +77,40 @@ std::string unknownName(const Options &options)
 
 nlohmann::ordered_json row(std::string_view name, const Measure &measure)
 {
-   return {{"name", name},
-           {"seconds", measure.seconds()},
-           {"rate", measure.rate()},
-           {"unit", measure.unit() + "/s"},
-           {"peak_bytes", measure.peakBytes()},
-           {"hash", measure.hash().text()}};
+   nlohmann::ordered_json all{{"name", name},
+                              {"seconds", measure.seconds()},
+                              {"rate", measure.rate()},
+                              {"unit", measure.unit() + "/s"},
+                              {"peak_bytes", measure.peakBytes()},
+                              {"hash", measure.hash().text()}};
+   for (const auto &[column, value] : measure.more())
+      all[column] = value;
+   return all;
 }
 
 std::string csv(const nlohmann::ordered_json &rows)
 {
-   std::string text = "name,seconds,rate,unit,peak_bytes,hash\n";
+   std::vector<std::string> columns{"name", "seconds", "rate", "unit", "peak_bytes", "hash"};
    for (const auto &r : rows)
-      text += fmt::format("{},{},{},{},{},{}\n", r["name"].get<std::string>(),
-                          numberText(r["seconds"].get<double>()), numberText(r["rate"].get<double>()),
-                          r["unit"].get<std::string>(), r["peak_bytes"].get<std::uint64_t>(),
-                          r["hash"].get<std::string>());
+      for (const auto &[column, value] : r.items())
+         if (std::find(columns.begin(), columns.end(), column) == columns.end())
+            columns.push_back(column);
+   std::string text;
+   for (const std::string &column : columns)
+      text += (text.empty() ? "" : ",") + column;
+   text += '\n';
+   for (const auto &r : rows)
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+         text += i == 0 ? "" : ",";
+         if (const auto value = r.find(columns[i]); value != r.end()) {
+            if (value->is_number_float())
+               text += numberText(value->get<double>());
+            else
+               text += value->is_string() ? value->get<std::string>() : value->dump();
+         }
+         if (i + 1 == columns.size())
+            text += '\n';
+      }
    return text;
 }
 
@@ -120,7 +139,7 @@ void run(const Options &options, Context &context)
             continue;
          const std::string name = fmt::format("{}/{}", group.name, benchmark.name);
          context.job().progress(0, name);
-         Measure measure(context.catalogue(), options.quick);
+         Measure measure(context.catalogue(), options.quick, benchmark.name);
          if (const Status status = benchmark.run(measure); !status)
             context.fail(status.error());
          else
@@ -133,6 +152,8 @@ void run(const Options &options, Context &context)
 }
 
 } // namespace
+
+std::uint64_t residentBytes() { return statusBytes("VmRSS:"); }
 
 void Measure::time(int times, const std::function<void()> &work)
 {

@@ -22,10 +22,10 @@ constexpr double kMostRows = 1e7;
 struct Options
 {
    RunOptions run;
-   std::string integrator, step, accuracy;
+   std::string integrator, precision, step, accuracy;
    double until = 0, every = 0, probeBudget = 30;
    std::optional<double> drag;
-   bool force = false;
+   bool force = false, reproducible = false;
 };
 
 /// What motion alone can be told.
@@ -33,6 +33,10 @@ Status applyOptions(const Options &options, Setup &setup)
 {
    if (!options.integrator.empty())
       setup.solverValues["integrator"] = options.integrator;
+   if (!options.precision.empty())
+      setup.solverValues["precision"] = options.precision;
+   if (options.reproducible)
+      setup.solverValues["reproducible"] = 1.0;
    if (options.force)
       setup.solverValues["force_step"] = 1.0;
    if (options.drag)
@@ -157,6 +161,8 @@ Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::In
       asked.quantity = options.run.probes.front();
    if (!options.integrator.empty())
       asked.fixed["integrator"] = options.integrator;
+   if (!options.precision.empty())
+      asked.fixed["precision"] = options.precision;
    auto choice = applyAccuracy(asked, input, input.opened.design.setup, context);
    if (!choice)
       return choice.error();
@@ -217,6 +223,9 @@ void addSimulate(CLI::App &app, Context &context)
        ->check(CLI::PositiveNumber);
    command->add_option("--integrator", options->integrator,
                        "The solver's integrator, e.g. semi_implicit, verlet, rk4");
+   command->add_option("--precision", options->precision, "The solver's numbers: f64 or f32");
+   command->add_flag("--reproducible", options->reproducible,
+                     "The same bits on any processor and from any compiler");
    command->add_option("--step", options->step,
                        "Time step in s, or auto for the stable one (default: the design's)");
    command->add_option("--accuracy", options->accuracy,

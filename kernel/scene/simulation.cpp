@@ -11,9 +11,9 @@ namespace diatom {
 
 namespace {
 
-/// Cell-steps of one batch: about 50 ms at 100 ns each. Fixed, so that energies are looked at after the same
-/// steps on every machine.
-constexpr std::int64_t kBatch = 500'000;
+/// Cell-steps of one batch, and steps at least: a look at the energies takes as long as some tens of steps.
+/// Fixed, so that energies are looked at after the same steps on every machine.
+constexpr std::int64_t kBatch = 5'000'000, kBatchSteps = 1000;
 
 } // namespace
 
@@ -105,7 +105,7 @@ Status Simulation::advance(double until, const Job &job)
 {
    Self &self = *m_self;
    SolverRun &run = *self.run;
-   const std::int64_t batch = std::max<std::int64_t>(1, kBatch / run.scene().cells());
+   const std::int64_t batch = std::max(kBatchSteps, kBatch / run.scene().cells());
    while (run.time() < until) {
       if (job.cancelled())
          return Error{ErrorCode::cancelled, fmt::format("cancelled at t = {} s", numberText(run.time()))};

@@ -97,10 +97,10 @@ Status Race::run()
       for (std::size_t k = 0; k < m_simulations.size(); ++k) {
          Simulation &one = *m_simulations[k];
          const std::int64_t before = one.steps();
-         const auto start = Clock::now();
+         const double start = one.wallSeconds();
          if (const Status advanced = one.advance((turn + 1) * stretch, m_job); !advanced)
             return advanced;
-         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+         const double seconds = one.wallSeconds() - start;
          if (turn > 0) // the first warms up
             m_seconds[k].push_back(seconds / static_cast<double>(one.steps() - before));
       }

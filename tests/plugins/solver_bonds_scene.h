@@ -193,6 +193,9 @@ struct SolverChoice
    std::string integrator = "semi_implicit", beam = "timoshenko", gradient = "exact";
    double safety = 0.9, forceStep = 0;
    double loadSteps = 0, modes = 10;
+   std::string precision = "f64";
+   double reproducible = 0;
+   std::string instructions = "best";
 };
 
 /// A running solver.
@@ -201,11 +204,22 @@ class Run
 public:
    explicit Run(HandScene &scene, const SolverChoice &choice = {}, int threads = 1) : host(threads)
    {
-      const char *names[] = {"integrator", "beam", "gradient", "safety", "force_step", "load_steps", "modes"};
-      const double numbers[] = {0, 0, 0, choice.safety, choice.forceStep, choice.loadSteps, choice.modes};
-      const char *texts[] = {
-          choice.integrator.c_str(), choice.beam.c_str(), choice.gradient.c_str(), "", "", "", ""};
-      const diatom_values values{sizeof(diatom_values), 7, names, numbers, texts};
+      const char *names[] = {"integrator", "beam",  "gradient",  "safety",       "force_step",
+                             "load_steps", "modes", "precision", "reproducible", "instructions"};
+      const double numbers[] = {
+          0, 0, 0, choice.safety, choice.forceStep, choice.loadSteps, choice.modes, 0, choice.reproducible,
+          0};
+      const char *texts[] = {choice.integrator.c_str(),
+                             choice.beam.c_str(),
+                             choice.gradient.c_str(),
+                             "",
+                             "",
+                             "",
+                             "",
+                             choice.precision.c_str(),
+                             "",
+                             choice.instructions.c_str()};
+      const diatom_values values{sizeof(diatom_values), 10, names, numbers, texts};
       const diatom_create create{sizeof(diatom_create), "org.diatom_cad.solver.bonds", "", &values};
       estimate.size = sizeof estimate;
       if (!table) {

@@ -51,13 +51,16 @@ void BondsSolver::estimate(sdk::Call, sdk::Values values, const sdk::SceneView &
    }
 }
 
-BondsSolver::BondsSolver(sdk::Call, sdk::Values values, const sdk::SceneView &scene)
+BondsSolver::BondsSolver(sdk::Call call, sdk::Values values, const sdk::SceneView &scene)
 {
    const Options options = Options::from(values);
    switch (askedOf(scene.analysis())) {
-   case Asked::motion:
-      m_analysis = std::make_unique<ExplicitRun>(options, scene);
+   case Asked::motion: {
+      auto run = std::make_unique<ExplicitRun>(options, scene);
+      call.report(DIATOM_INFO, run->how());
+      m_analysis = std::move(run);
       break;
+   }
    case Asked::balance:
       m_analysis = std::make_unique<StaticRun>(options, values, scene);
       break;

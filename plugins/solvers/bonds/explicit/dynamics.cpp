@@ -37,9 +37,7 @@ void Dynamics::select(unsigned effects, std::integer_sequence<unsigned, Effects.
 
 Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
                    const Options &options)
-    : m_assembly(&assembly), m_couplings(&couplings), m_integrator(options.integrator),
-      m_exact(options.exact), m_actuation(scene, assembly), m_drive(scene, assembly), m_state(assembly.cells),
-      m_rest(m_actuation.shape()), m_counted(m_rest), m_bonds(assembly, m_actuation.active(), options.exact),
+    : Motion(scene, assembly, couplings, options), m_bonds(assembly, m_actuation.active(), options.exact),
       m_sums(static_cast<std::size_t>((assembly.cells + kGrain - 1) / kGrain))
 {
    select(effectsOf(assembly, couplings), std::make_integer_sequence<unsigned, 32>());
@@ -50,58 +48,36 @@ Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const 
    } else if (m_integrator == Options::Integrator::verlet && rates) {
       m_start.resize(static_cast<std::size_t>(6 * assembly.cells));
    }
-   if (assembly.hasFriction)
-      for (Column &grip : m_state.grip)
-         grip.assign(static_cast<std::size_t>(assembly.cells), 0);
    if (!couplings.empty())
       for (Column &column : m_between)
          column.resize(static_cast<std::size_t>(assembly.cells));
-   if (assembly.hasLoads)
-      setLoads(scene.channel("force", 6));
-   for (std::int64_t i = 0; i < static_cast<std::int64_t>(assembly.velocity.size()); ++i)
-      for (int k = 0; k < 6; ++k)
-         m_state.column(7 + k)[i] = (assembly.fixed[i] >> k & 1) ? 0 : assembly.velocity[i][k];
-   startPose(scene, m_state);
-   if (m_drive.active())
-      m_drive.place(0, m_state);
+   save(0);
 }
 
-void Dynamics::setLoads(const sdk::Channel &loads)
+void Dynamics::save(double time)
 {
-   m_loads.assign(static_cast<std::size_t>(6 * m_assembly->cells), 0);
-   for (std::int64_t i = 0; i < loads.count(); ++i)
-      std::copy_n(loads.row(i), 6, m_loads.begin() + 6 * loads.where(i));
+   Motion::save(time);
+   m_saved = m_state;
 }
 
-void Dynamics::setCurves(std::span<const diatom_channel> channels)
+double Dynamics::restore()
 {
-   if (!m_drive.active())
-      throw sdk::Failure(DIATOM_UNSUPPORTED, "nothing is driven: a change of \"curve\" needs a new run");
-   m_drive.setCurves(channels);
+   m_state = m_saved;
+   return Motion::restore();
 }
 
-void Dynamics::save(double time, Snapshot &to) const
+Motion::Moving Dynamics::moving() const
 {
-   to.state = m_state;
-   to.rest = m_rest;
-   to.actuation = m_actuation;
-   to.dissipated = m_dissipated;
-   to.work = m_work;
-   to.time = time;
-   to.reached = m_drive.reached();
-   to.behind = m_behind;
-}
-
-void Dynamics::restore(const Snapshot &from)
-{
-   m_state = from.state;
-   m_rest = from.rest;
-   m_counted = from.rest;
-   m_actuation = from.actuation;
-   m_dissipated = from.dissipated;
-   m_work = from.work;
-   m_drive.goBack(from.reached);
-   m_behind = from.behind;
+   Moving out;
+   const Assembly &assembly = *m_assembly;
+   const Vec3 g{assembly.gravity[0], assembly.gravity[1], assembly.gravity[2]};
+   for (std::int64_t i = 0; i < assembly.cells; ++i) {
+      const Vec3 v = m_state.velocityOf(i), w = m_state.spinOf(i);
+      out.kinetic +=
+          0.5 * (assembly.mass[i] * dot(v, v) + dot(w, spinMomentum(assembly, i, m_state.turnOf(i), w)));
+      out.gravity -= assembly.mass[i] * dot(g, m_state.displacementOf(i));
+   }
+   return out;
 }
 
 template<unsigned Effects>
@@ -272,23 +248,6 @@ void Dynamics::bondForces(const sdk::Call &call, double weight)
       m_dissipated += power * weight;
 }
 
-/// Takes the rest shape of a moment; returns what it adds to the energy of the accepted one.
-double Dynamics::restChange(double when)
-{
-   m_actuation.setRest(when, m_rest);
-   double change = m_actuation.energyChange(*m_assembly, m_state, m_rest);
-   for (const auto &coupling : *m_couplings)
-      change += coupling->energy(m_state, &m_rest) - coupling->energy(m_state, &m_counted);
-   return change;
-}
-
-void Dynamics::acceptRest()
-{
-   m_actuation.accept(m_rest);
-   if (!m_couplings->empty())
-      m_counted = m_rest;
-}
-
 /// Work of the drives against the forces of the moment, at the velocities of the moment over `time`. What
 /// they put into momentum is counted when a step ends.
 void Dynamics::countDrive(double time)
@@ -305,40 +264,8 @@ void Dynamics::countDrive(double time)
    }
 }
 
-Acting Dynamics::acting() const
+void Dynamics::advance(const sdk::Call &call, double time, double dt)
 {
-   return actingOn(*m_assembly, *m_couplings, m_state, rest(), m_loads, m_exact);
-}
-
-State Dynamics::caughtUp(const Acting &acting) const
-{
-   State now = m_state;
-   if (m_behind > 0)
-      kickBy(*m_assembly, acting, m_behind, now);
-   return now;
-}
-
-double Dynamics::workBy(const Acting &acting) const
-{
-   double work = m_work;
-   for (const Drive::Led &led : m_drive.cells())
-      for (int k = 0; k < 6; ++k)
-         if (led.mask >> k & 1)
-            work -= m_behind * acting.all[6 * led.cell + k] * m_state.column(7 + k)[led.cell];
-   return work;
-}
-
-// The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
-// are before and after the step: second order, and exact for a jump while nothing moves.
-void Dynamics::step(const sdk::Call &call, double time, double dt)
-{
-   const bool actuated = m_actuation.active();
-   if (actuated) {
-      m_work += restChange(time); // first step, or new signals
-      acceptRest();
-      m_work += 0.5 * restChange(time + dt);
-      m_actuation.setRest(time, m_rest);
-   }
    if (m_drive.active() && m_integrator != Options::Integrator::semiImplicit)
       m_drive.lead(*m_assembly, time, dt, m_state);
    if (m_integrator == Options::Integrator::rungeKutta)
@@ -349,10 +276,6 @@ void Dynamics::step(const sdk::Call &call, double time, double dt)
       semiImplicit(call, time, dt);
    if (m_drive.active())
       m_work += m_drive.arrive(*m_assembly, dt, m_state);
-   if (actuated) {
-      m_work += 0.5 * restChange(time + dt);
-      acceptRest();
-   }
 }
 
 void Dynamics::semiImplicit(const sdk::Call &call, double time, double dt)

@@ -1,5 +1,7 @@
 #include "explicit/explicit_run.h"
 
+#include "explicit/dynamics.h"
+#include "explicit/vector_motion.h"
 #include "solid/couplings.h"
 
 #include <charconv>
@@ -32,6 +34,21 @@ std::vector<std::array<std::int32_t, 3>> indices(const sdk::SceneView &scene)
    return out;
 }
 
+std::unique_ptr<Motion> motionFor(const sdk::SceneView &scene, const Assembly &assembly,
+                                  const Couplings &couplings, const Options &options)
+{
+   const bool single = options.precision == Options::Precision::f32;
+   if (const auto why = whyNotVector(couplings, options)) {
+      if (single)
+         throw Failure(DIATOM_UNSUPPORTED,
+                       "there is no single precision for " + *why + ": choose the precision f64");
+      return std::make_unique<Dynamics>(scene, assembly, couplings, options);
+   }
+   if (single)
+      return std::make_unique<VectorMotion<float>>(scene, assembly, couplings, options);
+   return std::make_unique<VectorMotion<double>>(scene, assembly, couplings, options);
+}
+
 } // namespace
 
 void ExplicitRun::estimate(const Options &options, const sdk::SceneView &scene, diatom_estimate &estimate)
@@ -49,17 +66,17 @@ void ExplicitRun::estimate(const Options &options, const sdk::SceneView &scene, 
 
 ExplicitRun::ExplicitRun(const Options &options, const sdk::SceneView &scene)
     : m_options(options), m_assembly(scene, m_options), m_couplings(makeCouplings(scene, m_assembly)),
-      m_index(indices(scene)), m_dynamics(scene, m_assembly, m_couplings, m_options),
+      m_index(indices(scene)), m_motion(motionFor(scene, m_assembly, m_couplings, m_options)),
       m_stable(stableStep(m_assembly, m_options, m_couplings)),
-      m_good(m_dynamics.snapshot(0)), m_output{{{"position", "m", m_assembly.cells, 3},
-                                                {"rotation", "", m_assembly.cells, 4},
-                                                {"velocity", "m/s", m_assembly.cells, 3},
-                                                {"angular_velocity", "rad/s", m_assembly.cells, 3},
-                                                {"energy", "J", 1, 6},
-                                                {"momentum", "", 1, 6},
-                                                {"strain", "", m_assembly.cells, 1},
-                                                {"internal_force", "N", m_assembly.cells, 6},
-                                                {"reaction", "N", m_assembly.cells, 6}}}
+      m_output{{{"position", "m", m_assembly.cells, 3},
+                {"rotation", "", m_assembly.cells, 4},
+                {"velocity", "m/s", m_assembly.cells, 3},
+                {"angular_velocity", "rad/s", m_assembly.cells, 3},
+                {"energy", "J", 1, 6},
+                {"momentum", "", 1, 6},
+                {"strain", "", m_assembly.cells, 1},
+                {"internal_force", "N", m_assembly.cells, 6},
+                {"reaction", "N", m_assembly.cells, 6}}}
 {
    const Energies start = energiesNow();
    m_balance = start.stored();
@@ -72,6 +89,12 @@ ExplicitRun::ExplicitRun(const Options &options, const sdk::SceneView &scene)
    m_outputs = {sizeof(diatom_outputs), static_cast<std::int64_t>(m_output.size()), m_output.data()};
 }
 
+std::string ExplicitRun::how() const
+{
+   const auto why = whyNotVector(m_couplings, m_options);
+   return "motion in time by " + m_motion->how() + (why ? ", for " + *why : "");
+}
+
 void ExplicitRun::apply(const sdk::Call &, std::span<const diatom_channel> channels)
 {
    const std::int64_t cells = m_assembly.cells;
@@ -79,16 +102,17 @@ void ExplicitRun::apply(const sdk::Call &, std::span<const diatom_channel> chann
    for (const diatom_channel &channel : channels) {
       const std::string_view name = channel.name;
       if (name == "force" && m_assembly.hasLoads)
-         m_dynamics.setLoads(sdk::findChannel(channels, name, 6, cells));
+         m_motion->setLoads(sdk::findChannel(channels, name, 6, cells));
       else if (name == "curve")
-         m_dynamics.setCurves(channels);
+         m_motion->setCurves(channels);
       else if (name == "source")
-         m_dynamics.setSources(sdk::findChannel(channels, name, 6, cells));
+         m_motion->setSources(sdk::findChannel(channels, name, 6, cells));
       else if (name == "gravity" && m_assembly.hasGravity && channel.count == 1) {
          const double *g = sdk::findChannel(channels, name, 3, -1).row(0);
          const double before = energiesNow().gravity;
          std::copy_n(g, 3, m_assembly.gravity.begin());
-         m_dynamics.addWork(energiesNow().gravity - before);
+         m_motion->gravityChanged();
+         m_motion->addWork(energiesNow().gravity - before);
       } else
          throw Failure(DIATOM_UNSUPPORTED, "a change of \"" + std::string(name) + "\" needs a new run");
    }
@@ -123,29 +147,33 @@ double ExplicitRun::chooseStep(const diatom_step_request &request) const
 const Acting &ExplicitRun::acting() const
 {
    if (!m_acting)
-      m_acting = m_dynamics.acting();
+      m_acting = m_motion->acting();
    return *m_acting;
 }
 
 bool ExplicitRun::diverged()
 {
-   const Energies now = energiesNow();
-   const double balance = now.stored() + m_dynamics.dissipated() - m_dynamics.work();
-   m_work = std::max(m_work, std::abs(m_dynamics.work()));
-   m_fall = std::max(m_fall, std::abs(now.gravity));
-   return !std::isfinite(balance) || balance - m_balance > kEnergyGrowth * (m_scale + m_work + m_fall);
+   // Energy of motion is cheap to tell and grows with all else; only where it has grown is the rest looked
+   // at.
+   const Motion::Moving moving = m_motion->moving();
+   m_work = std::max(m_work, std::abs(m_motion->work()));
+   m_fall = std::max(m_fall, std::abs(moving.gravity));
+   const double most = kEnergyGrowth * (m_scale + m_work + m_fall);
+   if (moving.kinetic <= most && std::isfinite(moving.gravity))
+      return false;
+   const double balance = energiesNow().stored() + m_motion->dissipated() - m_motion->work();
+   return !std::isfinite(balance) || balance - m_balance > most;
 }
 
 void ExplicitRun::reportDivergence(const sdk::Call &call, double time, double step,
                                    diatom_step_result &result)
 {
-   const std::int64_t cell = brokenCell(m_assembly, m_dynamics.state());
-   const std::int64_t bond = worstBond(m_assembly, m_dynamics.state(), m_dynamics.rest());
+   const std::int64_t cell = brokenCell(m_assembly, m_motion->state());
+   const std::int64_t bond = worstBond(m_assembly, m_motion->state(), m_motion->rest());
    result.state = DIATOM_DIVERGED;
    result.bad_cell = cell;
    result.bad_link = bond < 0 ? -1 : m_assembly.link[bond];
-   m_dynamics.restore(m_good);
-   m_time = m_good.time;
+   m_time = m_motion->restore();
    m_failed = true;
    call.report(DIATOM_ERROR, "the motion diverged at " + text(time) + " s, first at " +
                                  whereText(bond, cell) + "; the state of " + text(m_time) +
@@ -183,7 +211,7 @@ std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request 
          status = DIATOM_CANCELLED;
          break;
       }
-      m_dynamics.step(call, m_time, dt);
+      m_motion->step(call, m_time, dt);
       m_time = n + 1 == wanted ? request.until : start + (n + 1) * dt;
       ++result.steps;
       const bool last = n + 1 == wanted || n + 1 == allowed;
@@ -194,7 +222,7 @@ std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request 
          reportDivergence(call, m_time, dt, result);
          break;
       }
-      m_dynamics.save(m_time, m_good);
+      m_motion->save(m_time);
       call.progress((n + 1) / wanted, "stepping");
    }
    result.time = m_time;
@@ -205,7 +233,7 @@ std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request 
 
 void ExplicitRun::read(std::int64_t output, std::int64_t first, std::int64_t count, double *values) const
 {
-   const State &state = m_dynamics.state();
+   const State &state = m_motion->state();
    const auto rows = [&](int column, int stride) {
       for (std::int64_t i = 0; i < count; ++i)
          for (int k = 0; k < stride; ++k)
@@ -222,14 +250,13 @@ void ExplicitRun::read(std::int64_t output, std::int64_t first, std::int64_t cou
    } else if (output == 3) {
       rows(10, 3);
    } else if (output == 4 && count == 1) {
+      const bool lags = m_motion->lags();
       const Energies now =
-          energies(m_assembly, m_couplings, m_dynamics.caughtUp(acting()), m_dynamics.rest());
-      const double all[6] = {now.kinetic,
-                             now.elastic,
-                             now.gravity,
-                             now.contact,
-                             m_dynamics.dissipated(),
-                             m_dynamics.workBy(acting())};
+          lags ? energies(m_assembly, m_couplings, m_motion->caughtUp(acting()), m_motion->rest())
+               : energiesNow();
+      const double work = lags ? m_motion->workBy(acting()) : m_motion->work();
+      const double all[6] = {now.kinetic, now.elastic, now.gravity, now.contact, m_motion->dissipated(),
+                             work};
       std::copy_n(all, 6, values);
    } else if (output == 5 && count == 1) {
       const Momenta now = momenta(m_assembly, state);
@@ -237,7 +264,7 @@ void ExplicitRun::read(std::int64_t output, std::int64_t first, std::int64_t cou
                              now.angular.x, now.angular.y, now.angular.z};
       std::copy_n(all, 6, values);
    } else if (output == 6) {
-      const Column all = strains(m_assembly, state, m_dynamics.rest());
+      const Column all = strains(m_assembly, state, m_motion->rest());
       std::copy_n(all.begin() + first, count, values);
    } else if (output == 7) {
       std::copy_n(acting().internal.begin() + 6 * first, 6 * count, values);

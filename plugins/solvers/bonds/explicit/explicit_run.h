@@ -2,7 +2,7 @@
 #pragma once
 
 #include "analysis.h"
-#include "explicit/dynamics.h"
+#include "explicit/motion.h"
 
 #include "model/energy.h"
 #include "model/stable_step.h"
@@ -20,6 +20,8 @@ public:
    ExplicitRun(const ExplicitRun &) = delete;
    ExplicitRun &operator=(const ExplicitRun &) = delete;
 
+   /// How the motion is computed and, where that is the slow way, why.
+   std::string how() const;
    void apply(const sdk::Call &call, std::span<const diatom_channel> channels) override;
    std::int32_t step(const sdk::Call &call, const diatom_step_request &request,
                      diatom_step_result &result) override;
@@ -30,7 +32,7 @@ private:
    double chooseStep(const diatom_step_request &request) const;
    Energies energiesNow() const
    {
-      return energies(m_assembly, m_couplings, m_dynamics.state(), m_dynamics.rest());
+      return energies(m_assembly, m_couplings, m_motion->state(), m_motion->rest());
    }
    const Acting &acting() const;
    bool diverged();
@@ -41,9 +43,8 @@ private:
    Assembly m_assembly;
    Couplings m_couplings;
    std::vector<std::array<std::int32_t, 3>> m_index; // of cells, for messages
-   Dynamics m_dynamics;
+   std::unique_ptr<Motion> m_motion;
    StableStep m_stable;
-   Dynamics::Snapshot m_good;
    double m_time = 0;
    double m_balance = 0;                       // J: stored + dissipated - work at the start
    double m_scale = 0, m_work = 0, m_fall = 0; // J: what has gone in so far

@@ -103,6 +103,16 @@ void Actuation::addDriver(const sdk::SceneView &scene, const Assembly &assembly,
    }
 }
 
+std::vector<bool> Actuation::driven(std::int64_t bonds) const
+{
+   std::vector<bool> out;
+   if (active())
+      out.resize(static_cast<std::size_t>(bonds));
+   for (const std::int64_t bond : m_bonds)
+      out[bond] = true;
+   return out;
+}
+
 void Actuation::setRest(double time, RestShape &rest) const
 {
    std::vector<double>::size_type i = 0;

@@ -29,6 +29,8 @@ class Actuation
 public:
    Actuation(const sdk::SceneView &scene, const Assembly &assembly);
    bool active() const { return !m_bonds.empty(); }
+   /// Of each bond, whether its rest shape may change; empty when nothing is driven.
+   std::vector<bool> driven(std::int64_t bonds) const;
    void setSources(const sdk::Channel &sources);
 
    void setRest(double time, RestShape &rest) const;

@@ -21,6 +21,18 @@ Options Options::from(const sdk::Values &values)
                   : integrator == "verlet" ? Integrator::verlet
                                            : Integrator::semiImplicit;
    o.beam = beam == "thesis" ? Beam::thesis : beam == "euler" ? Beam::euler : Beam::timoshenko;
+   const auto precision = values.text("precision");
+   if (precision != "f64" && precision != "f32")
+      throw Failure(DIATOM_BAD_INPUT, "unknown precision \"" + std::string(precision) + "\"");
+   o.precision = precision == "f32" ? Precision::f32 : Precision::f64;
+   const auto instructions = values.text("instructions");
+   if (instructions != "best" && instructions != "avx2" && instructions != "sse4" && instructions != "scalar")
+      throw Failure(DIATOM_BAD_INPUT, "unknown instructions \"" + std::string(instructions) + "\"");
+   o.instructions = instructions == "avx2"     ? Instructions::avx2
+                    : instructions == "sse4"   ? Instructions::sse4
+                    : instructions == "scalar" ? Instructions::scalar
+                                               : Instructions::best;
+   o.reproducible = values.number("reproducible") != 0;
    o.exact = gradient != "simple";
    o.safety = values.number("safety");
    if (!(o.safety > 0 && o.safety <= 1))

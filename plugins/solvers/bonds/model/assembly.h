@@ -2,7 +2,7 @@
 // which bond.
 #pragma once
 
-#include "model/constants.h"
+#include "model/bond_table.h"
 
 #include <diatom/solver.hpp>
 
@@ -23,6 +23,11 @@ struct Options
    Integrator integrator = Integrator::semiImplicit;
    Beam beam = Beam::timoshenko;
    bool exact = true;
+   enum class Precision { f64, f32 };
+   Precision precision = Precision::f64;
+   bool reproducible = false; // the same bits on any instruction set
+   enum class Instructions { best, avx2, sse4, scalar };
+   Instructions instructions = Instructions::best;
    double safety = 0.9;
    bool forceStep = false;
 
@@ -58,7 +63,7 @@ struct Assembly
    std::vector<std::int32_t> a, b;
    std::vector<std::int64_t> link; // the scene's number
    Column length;
-   std::vector<BondConstants> constants;
+   BondTable constants;
    std::vector<Mat3> frame; // rows are the bond's axes; only of the last group
 
    // Bonds of each cell: 2 * bond + (1 where the cell is b), in bond order.

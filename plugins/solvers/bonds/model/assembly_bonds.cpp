@@ -247,7 +247,6 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
    a.resize(link.size());
    b.resize(link.size());
    length.resize(link.size());
-   constants.resize(link.size());
    for (std::int64_t i = 0; i < links; ++i) {
       const Direction &d = direction[link[i]];
       a[i] = d.reversed ? scene.linkB(link[i]) : scene.linkA(link[i]);
@@ -260,10 +259,11 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
    bool anyDamping = false;
    for (std::int64_t i = 0; i < links; ++i) {
       bool own = false;
-      constants[i] = compiler.constantsOf(i, own);
+      constants.push_back(compiler.constantsOf(i, own));
       coupled = coupled || constants[i].s[0] != 0 || constants[i].s[1] != 0;
       anyDamping = anyDamping || own;
    }
+   constants.finish();
    damped = damped && anyDamping;
    if (!damped)
       for (BondConstants &k : constants)

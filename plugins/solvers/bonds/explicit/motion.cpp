@@ -1,0 +1,114 @@
+#include "explicit/motion.h"
+
+namespace bonds {
+
+Motion::Motion(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
+               const Options &options)
+    : m_assembly(&assembly), m_couplings(&couplings), m_integrator(options.integrator),
+      m_exact(options.exact), m_actuation(scene, assembly), m_drive(scene, assembly), m_state(assembly.cells),
+      m_rest(m_actuation.shape()), m_counted(m_rest), m_savedAccount{{}, m_actuation, {}, 0, 0, 0, 0}
+{
+   if (assembly.hasFriction)
+      for (Column &grip : m_state.grip)
+         grip.assign(static_cast<std::size_t>(assembly.cells), 0);
+   if (assembly.hasLoads)
+      Motion::setLoads(scene.channel("force", 6));
+   for (std::int64_t i = 0; i < static_cast<std::int64_t>(assembly.velocity.size()); ++i)
+      for (int k = 0; k < 6; ++k)
+         m_state.column(7 + k)[i] = (assembly.fixed[i] >> k & 1) ? 0 : assembly.velocity[i][k];
+   startPose(scene, m_state);
+   if (m_drive.active())
+      m_drive.place(0, m_state);
+}
+
+void Motion::setLoads(const sdk::Channel &loads)
+{
+   m_loads.assign(static_cast<std::size_t>(6 * m_assembly->cells), 0);
+   for (std::int64_t i = 0; i < loads.count(); ++i)
+      std::copy_n(loads.row(i), 6, m_loads.begin() + 6 * loads.where(i));
+}
+
+void Motion::setCurves(std::span<const diatom_channel> channels)
+{
+   if (!m_drive.active())
+      throw sdk::Failure(DIATOM_UNSUPPORTED, "nothing is driven: a change of \"curve\" needs a new run");
+   m_drive.setCurves(channels);
+}
+
+void Motion::save(double time)
+{
+   m_savedAccount = {m_rest, m_actuation, m_drive.reached(), m_dissipated, m_work, time, m_behind};
+}
+
+double Motion::restore()
+{
+   m_rest = m_savedAccount.rest;
+   m_counted = m_savedAccount.rest;
+   m_actuation = m_savedAccount.actuation;
+   m_drive.goBack(m_savedAccount.reached);
+   m_dissipated = m_savedAccount.dissipated;
+   m_work = m_savedAccount.work;
+   m_behind = m_savedAccount.behind;
+   return m_savedAccount.time;
+}
+
+Acting Motion::acting() const
+{
+   return actingOn(*m_assembly, *m_couplings, state(), rest(), m_loads, m_exact);
+}
+
+State Motion::caughtUp(const Acting &acting) const
+{
+   State now = state();
+   kickBy(*m_assembly, acting, m_behind, now);
+   return now;
+}
+
+double Motion::workBy(const Acting &acting) const
+{
+   double work = m_work;
+   for (const Drive::Led &led : m_drive.cells())
+      for (int k = 0; k < 6; ++k)
+         if (led.mask >> k & 1)
+            work -= m_behind * acting.all[6 * led.cell + k] * state().column(7 + k)[led.cell];
+   return work;
+}
+
+/// Takes the rest shape of a moment; returns what it adds to the energy of the accepted one.
+double Motion::restChange(double when)
+{
+   m_actuation.setRest(when, m_rest);
+   readActuated();
+   double change = m_actuation.energyChange(*m_assembly, m_state, m_rest);
+   for (const auto &coupling : *m_couplings)
+      change += coupling->energy(m_state, &m_rest) - coupling->energy(m_state, &m_counted);
+   return change;
+}
+
+void Motion::acceptRest()
+{
+   m_actuation.accept(m_rest);
+   if (!m_couplings->empty())
+      m_counted = m_rest;
+}
+
+// The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
+// are before and after the step: second order, and exact for a jump while nothing moves.
+void Motion::step(const sdk::Call &call, double time, double dt)
+{
+   const bool actuated = m_actuation.active();
+   if (actuated) {
+      m_work += restChange(time); // first step, or new signals
+      acceptRest();
+      m_work += 0.5 * restChange(time + dt);
+      m_actuation.setRest(time, m_rest);
+      restChanged();
+   }
+   advance(call, time, dt);
+   if (actuated) {
+      m_work += 0.5 * restChange(time + dt);
+      acceptRest();
+   }
+}
+
+} // namespace bonds

@@ -1,0 +1,202 @@
+// Forces of the bonds of a run, added to those of their cells. Included once per instruction set.
+#if defined(BONDS_RUNS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BONDS_RUNS_INL_H
+#undef BONDS_RUNS_INL_H
+#else
+#define BONDS_RUNS_INL_H
+#endif
+
+#include "explicit/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace bonds::HWY_NAMESPACE {
+
+/// Columns of two ends and of what acts on them; of bonds that are listed, copies.
+template<typename T>
+struct EndPlaces
+{
+   const T *a, *b; // first of thirteen columns
+   const T *rateA, *rateB;
+   T *outA, *outB;
+   std::size_t stride, outStrideA, outStrideB;
+};
+
+template<class D, typename T, class V = hn::Vec<D>>
+HWY_INLINE void addThree(D d, T *at, std::size_t stride, const std::size_t (&order)[3], Three<V> v)
+{
+   T *const x = at + order[0] * stride, *const y = at + order[1] * stride, *const z = at + order[2] * stride;
+   hn::StoreU(hn::Add(hn::LoadU(d, x), v.x), d, x);
+   hn::StoreU(hn::Add(hn::LoadU(d, y), v.y), d, y);
+   hn::StoreU(hn::Add(hn::LoadU(d, z), v.z), d, z);
+}
+template<class D, typename T, class V = hn::Vec<D>>
+HWY_INLINE void takeThree(D d, T *at, std::size_t stride, const std::size_t (&order)[3], Three<V> v)
+{
+   T *const x = at + order[0] * stride, *const y = at + order[1] * stride, *const z = at + order[2] * stride;
+   hn::StoreU(hn::Sub(hn::LoadU(d, x), v.x), d, x);
+   hn::StoreU(hn::Sub(hn::LoadU(d, y), v.y), d, y);
+   hn::StoreU(hn::Sub(hn::LoadU(d, z), v.z), d, z);
+}
+
+inline constexpr std::size_t kOrder[4][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
+
+template<bool kDamped, bool kGeneral, bool kFused, class D, typename T = hn::TFromD<D>>
+HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
+{
+   using V = hn::Vec<D>;
+   const auto &order = kOrder[run.axis];
+   const bool uniform = run.flags & Run::uniform, askew = run.axis == 3;
+   const T *pool = work.pool + run.constants;
+   const std::size_t lanes = hn::Lanes(d);
+   for (std::size_t at = 0; at < kBlock; at += lanes) {
+      const unsigned there = run.lanes >> at & ((2u << (lanes - 1)) - 1);
+      if (there == 0)
+         continue;
+      BondLaw<V> law;
+      const auto constant = [&](std::size_t i) HWY_ATTR {
+         return uniform ? hn::Set(d, pool[i]) : hn::LoadU(d, pool + i * kBlock + at);
+      };
+      law.length = constant(kLength);
+      law.k = {constant(kAxial), constant(kAxial + 1), constant(kAxial + 2)};
+      law.c = {constant(kTorsion), constant(kTorsion + 1), constant(kTorsion + 2)};
+      if constexpr (kDamped) {
+         law.d = {constant(kDamping), constant(kDamping + 1), constant(kDamping + 2)};
+         law.e = {constant(kDamping + 3), constant(kDamping + 4), constant(kDamping + 5)};
+      }
+      Three<V> frame[3];
+      if constexpr (kGeneral) {
+         law.s[0] = constant(kCoupling);
+         law.s[1] = constant(kCoupling + 1);
+         const V zero = hn::Zero(d);
+         law.stretch = law.turn = {zero, zero, zero};
+         if (run.flags & Run::actuated) {
+            constexpr std::size_t own[3] = {0, 1, 2};
+            law.stretch = three(d, work.rest + run.rest + at, kBlock, own);
+            law.turn = three(d, work.rest + run.rest + 3 * kBlock + at, kBlock, own);
+         }
+         if (askew)
+            for (int i = 0; i < 3; ++i) {
+               const T *row = work.frames + 9 * run.frame + 3 * i;
+               frame[i] = {hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2])};
+            }
+      }
+      const auto inAxes = [&](Three<V> v) HWY_ATTR {
+         if constexpr (kGeneral)
+            return askew ? rotate<kFused>(frame, v) : v;
+         else
+            return v;
+      };
+      const std::size_t stride = ends.stride;
+      const T *a = ends.a + at, *b = ends.b + at;
+      BondState<V> state;
+      state.du = inAxes(three(d, b, stride, order) - three(d, a, stride, order));
+      state.aw = hn::LoadU(d, a + 3 * stride);
+      state.bw = hn::LoadU(d, b + 3 * stride);
+      state.a = inAxes(three(d, a + 4 * stride, stride, order));
+      state.b = inAxes(three(d, b + 4 * stride, stride, order));
+      if constexpr (kDamped) {
+         const T *ra = ends.rateA + at, *rb = ends.rateB + at;
+         state.dv = inAxes(three(d, rb, stride, order) - three(d, ra, stride, order));
+         const Three<V> wa = three(d, ra + 3 * stride, stride, order),
+                        wb = three(d, rb + 3 * stride, stride, order);
+         state.dw = inAxes(wb - wa);
+         state.sum = inAxes(wa + wb);
+      }
+      BondOut<V> out = bondLaw<kDamped, kGeneral, kFused>(d, state, law);
+      if constexpr (kGeneral)
+         if (askew) {
+            out.force = rotateBack<kFused>(frame, out.force);
+            out.atA = rotateBack<kFused>(frame, out.atA);
+            out.atB = rotateBack<kFused>(frame, out.atB);
+         }
+      if (HWY_UNLIKELY(there != (2u << (lanes - 1)) - 1)) { // a bond that is not there may be no number
+         std::uint8_t bits[8] = {static_cast<std::uint8_t>(there), static_cast<std::uint8_t>(there >> 8)};
+         const auto mask = hn::LoadMaskBits(d, bits);
+         for (Three<V> *v : {&out.force, &out.atA, &out.atB})
+            *v = {hn::IfThenElseZero(mask, v->x), hn::IfThenElseZero(mask, v->y),
+                  hn::IfThenElseZero(mask, v->z)};
+         if constexpr (kDamped)
+            out.power = hn::IfThenElseZero(mask, out.power);
+      }
+      addThree(d, ends.outA + at, ends.outStrideA, order, out.force);
+      addThree(d, ends.outA + 3 * ends.outStrideA + at, ends.outStrideA, order, out.atA);
+      takeThree(d, ends.outB + at, ends.outStrideB, order, out.force);
+      takeThree(d, ends.outB + 3 * ends.outStrideB + at, ends.outStrideB, order, out.atB);
+      if constexpr (kDamped)
+         hn::StoreU(hn::Add(hn::LoadU(d, power + at), out.power), d, power + at);
+   }
+}
+
+/// A run whose cells lie anywhere: copied together, and its forces spread in order.
+template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
+HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *outA, std::size_t outStrideA,
+                            T *outB, std::size_t outStrideB, std::uint32_t firstA, std::uint32_t firstB,
+                            bool spread, T *power)
+{
+   HWY_ALIGN T in[2][13 * kBlock];
+   HWY_ALIGN T out[2][6 * kBlock] = {};
+   const std::uint32_t *lo = work.listLo + run.lo, *hi = work.listHi + run.lo;
+   const int columns = kDamped ? 13 : 7;
+   for (int k = 0; k < columns; ++k) {
+      const T *column = k < 7 ? work.state + k * work.stride : work.rate + (k - 7) * work.stride;
+      for (std::size_t i = 0; i < kBlock; ++i) {
+         in[0][k * kBlock + i] = column[lo[i]];
+         in[1][k * kBlock + i] = column[hi[i]];
+      }
+   }
+   EndPlaces<T> ends{in[0],  in[1], in[0] + 7 * kBlock, in[1] + 7 * kBlock, out[0], out[1], kBlock,
+                     kBlock, kBlock};
+   if (!spread) { // each bond has places of its own
+      ends.outA = outA;
+      ends.outB = outB;
+      ends.outStrideA = outStrideA;
+      ends.outStrideB = outStrideB;
+   }
+   if ((run.flags & (Run::coupled | Run::actuated)) != 0 || run.axis == 3)
+      bondsOfRun<kDamped, true, kFused>(d, work, run, ends, power);
+   else
+      bondsOfRun<kDamped, false, kFused>(d, work, run, ends, power);
+   if (!spread)
+      return;
+   for (int k = 0; k < 6; ++k)
+      for (std::size_t i = 0; i < kBlock; ++i)
+         if (run.lanes >> i & 1) {
+            outA[k * outStrideA + lo[i] - firstA] += out[0][k * kBlock + i];
+            outB[k * outStrideB + hi[i] - firstB] += out[1][k * kBlock + i];
+         }
+}
+
+template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
+HWY_NOINLINE void generalRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends,
+                             T *power)
+{
+   bondsOfRun<kDamped, true, kFused>(d, work, run, ends, power);
+}
+
+/// Adds the forces of a run: at lo from `outA`, which stands for cell firstA, at hi likewise.
+template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
+HWY_INLINE void addRun(D d, const SweepWork<T> &work, const Run &run, T *outA, std::size_t outStrideA,
+                       T *outB, std::size_t outStrideB, std::uint32_t firstA, std::uint32_t firstB, T *power)
+{
+   if (HWY_UNLIKELY(run.flags & Run::listed))
+      return listedRun<kDamped, kFused>(d, work, run, outA, outStrideA, outB, outStrideB, firstA, firstB,
+                                        true, power);
+   const EndPlaces<T> ends{work.state + run.lo,
+                           work.state + run.hi,
+                           work.rate + run.lo,
+                           work.rate + run.hi,
+                           outA + (run.lo - firstA),
+                           outB + (run.hi - firstB),
+                           work.stride,
+                           outStrideA,
+                           outStrideB};
+   if (HWY_UNLIKELY((run.flags & Run::general) != 0 || run.axis == 3))
+      generalRun<kDamped, kFused>(d, work, run, ends, power);
+   else
+      bondsOfRun<kDamped, false, kFused>(d, work, run, ends, power);
+}
+
+} // namespace bonds::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

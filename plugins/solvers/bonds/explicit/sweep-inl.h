@@ -1,0 +1,139 @@
+// One pass over a tile: the bonds of a chunk of cells, each once, then the chunk moves while it is still in
+// the cache. Bonds reach forward only, so that a chunk's forces are complete when its own bonds are done.
+// Included once per instruction set and type.
+#if defined(BONDS_SWEEP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BONDS_SWEEP_INL_H
+#undef BONDS_SWEEP_INL_H
+#else
+#define BONDS_SWEEP_INL_H
+#endif
+
+#include "explicit/moves-inl.h"
+#include "explicit/runs-inl.h"
+
+#include <algorithm>
+#include <cstring>
+
+HWY_BEFORE_NAMESPACE();
+namespace bonds::HWY_NAMESPACE {
+
+template<bool kFused, typename T>
+void drift(const SweepWork<T> &work, const Tile &tile, double dt)
+{
+   const Lanes<T> d;
+   for (std::size_t cell = tile.cells; cell < tile.cellsEnd; cell += hn::Lanes(d)) {
+      T *const at = work.state + cell;
+      driftCells<kFused>(d, work, cell, three(d, at + 7 * work.stride, work.stride, kWorld),
+                         three(d, at + 10 * work.stride, work.stride, kWorld), dt);
+   }
+}
+
+template<typename T>
+void addCrossings(const SweepWork<T> &work, const Chunk *chunk, T *atLo)
+{
+   for (std::uint32_t c = chunk[0].crossings; c < chunk[1].crossings; ++c) {
+      const Crossing &one = work.crossings[c];
+      const T *slot = work.slots + one.slot + (one.atHi ? 6 * work.slotStride : 0);
+      const std::ptrdiff_t to = one.cell - static_cast<std::ptrdiff_t>(chunk->cells);
+      for (int k = 0; k < 6; ++k)
+         for (std::size_t i = 0; i < kBlock; ++i)
+            if (one.lanes >> i & 1)
+               atLo[k * kChunk + to + static_cast<std::ptrdiff_t>(i)] += slot[k * work.slotStride + i];
+   }
+}
+
+template<bool kDamped, bool kFused, typename T>
+void tile(const SweepWork<T> &work, const Tile &one, const Move &move, std::vector<T> &room, SweepSums &sums)
+{
+   const Lanes<T> d;
+   // Forces at the far ends wait in a window that moves on with the chunks.
+   const std::size_t reach = work.span + kChunk + 2 * kBlock;
+   const std::size_t all = one.cellsEnd - one.cells + 2 * kBlock, most = 3 * reach + 5 * kBlock;
+   const std::size_t hiStride = std::min(all, most);
+   room.assign(6 * hiStride, 0);
+   HWY_ALIGN T atLo[6 * kChunk];
+   LaneSums<T> lanes;
+   std::uint32_t first = one.cells;
+   for (std::uint32_t c = one.chunks; c < one.chunksEnd; ++c) {
+      const Chunk *chunk = work.chunks + c;
+      const std::uint32_t begin = chunk->cells, end = std::min(begin + kChunk, one.cellsEnd);
+      if (all > most && begin - first + reach > hiStride) {
+         const std::size_t done = begin - first;
+         for (int k = 0; k < 6; ++k) {
+            T *column = room.data() + k * hiStride;
+            std::memmove(column, column + done, (hiStride - done) * sizeof(T));
+            std::fill(column + (hiStride - done), column + hiStride, T(0));
+         }
+         first = begin;
+      }
+      std::memset(atLo, 0, sizeof atLo);
+      for (std::uint32_t r = chunk[0].runs; r < chunk[1].runs; ++r)
+         addRun<kDamped, kFused>(d, work, work.runs[r], atLo, kChunk, room.data(), hiStride, begin, first,
+                                 lanes.power);
+      if (chunk[0].crossings != chunk[1].crossings)
+         addCrossings(work, chunk, atLo);
+      const T *atHi = room.data() + (begin - first);
+      if (work.beforeKick)
+         work.beforeKick(work.context, begin, end, atLo, atHi, hiStride);
+      const std::size_t step = hn::Lanes(d);
+      for (std::size_t cell = begin; cell < end; cell += step)
+         moveCells<kFused>(d, work, cell, move, atLo + (cell - begin), atHi + (cell - begin), hiStride, lanes,
+                           (cell - begin) % kBlock);
+      if (work.afterKick && !move.predict && !move.stage) {
+         work.afterKick(work.context, begin, end);
+         if (move.drift > 0)
+            for (std::size_t cell = begin; cell < end; cell += step) {
+               T *const at = work.state + cell;
+               driftCells<kFused>(d, work, cell, three(d, at + 7 * work.stride, work.stride, kWorld),
+                                  three(d, at + 10 * work.stride, work.stride, kWorld), move.drift);
+            }
+      }
+      if constexpr (kDamped)
+         sums.power += total(lanes.power);
+      if (work.drag != 0)
+         sums.drag += total(lanes.drag);
+      if (work.loads)
+         sums.load += total(lanes.load);
+   }
+}
+
+template<bool kDamped, bool kFused, typename T>
+void cross(const SweepWork<T> &work, const Tile &tile, SweepSums &sums)
+{
+   const Lanes<T> d;
+   HWY_ALIGN T power[kBlock] = {};
+   for (std::uint32_t r = tile.cross; r < tile.crossEnd; ++r) {
+      const Run &run = work.runs[r];
+      T *lo = work.slots + static_cast<std::size_t>(r - work.firstCross) * kBlock,
+        *hi = lo + 6 * work.slotStride;
+      for (int k = 0; k < 12; ++k)
+         std::fill_n(lo + k * work.slotStride, kBlock, T(0));
+      if (run.flags & Run::listed)
+         listedRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, 0, 0, false,
+                                    power);
+      else
+         addRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, run.lo, run.hi,
+                                 power);
+   }
+   sums.power += total(power);
+}
+
+template<typename T, bool kDamped, bool kFused>
+SweepKernel<T> kernelWith()
+{
+   return {&tile<kDamped, kFused, T>, &cross<kDamped, kFused, T>, &drift<kFused, T>,
+           hwy::TargetName(HWY_TARGET)};
+}
+
+template<typename T>
+SweepKernel<T> kernelOf(const KernelChoice &choice)
+{
+   if (choice.damped)
+      return choice.fused ? kernelWith<T, true, true>() : kernelWith<T, true, false>();
+   return choice.fused ? kernelWith<T, false, true>() : kernelWith<T, false, false>();
+}
+
+} // namespace bonds::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
