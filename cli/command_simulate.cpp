@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kDefaultRows = 200; // of a record whose interval is not given
 constexpr double kMostRows = 1e7;
+constexpr std::size_t kEffort = 6; // numbers of the output "effort"
 
 struct Options
 {
@@ -94,9 +95,21 @@ Result<nlohmann::ordered_json> summary(const Simulation &simulation, const std::
        {"time_s", simulation.time()},
        {"steps", simulation.steps()},
        {"step_s", simulation.step()},
-       {"stable_step_s", simulation.stableStep()},
+       {"stable_step_s", simulation.stableStep() > 0 ? nlohmann::ordered_json(simulation.stableStep())
+                                                     : nlohmann::ordered_json(nullptr)},
        {"wall_s", simulation.wallSeconds()},
        {"ns_per_cell_step", cellSteps > 0 ? 1e9 * simulation.wallSeconds() / cellSteps : 0.0}};
+   if (simulation.run().hasOutput("effort")) {
+      const auto effort = simulation.output("effort", job);
+      if (!effort)
+         return effort.error();
+      if (effort->size() >= kEffort)
+         object["solver_effort"] = {{"newton_iterations", (*effort)[1]},
+                                    {"factorisations", (*effort)[2]},
+                                    {"repeated_steps", (*effort)[3]},
+                                    {"shortest_step_s", (*effort)[4]},
+                                    {"longest_step_s", (*effort)[5]}};
+   }
    object["effects"] = effectsReport(simulation.scene().effects(), forPrograms);
    object["energy"] = {
        {"kinetic", energy->kinetic}, {"elastic", energy->elastic},       {"gravity", energy->gravity},
@@ -222,12 +235,13 @@ void addSimulate(CLI::App &app, Context &context)
        ->required()
        ->check(CLI::PositiveNumber);
    command->add_option("--integrator", options->integrator,
-                       "The solver's integrator, e.g. semi_implicit, verlet, rk4");
+                       "The solver's integrator, e.g. semi_implicit, verlet, rk4, implicit");
    command->add_option("--precision", options->precision, "The solver's numbers: f64 or f32");
    command->add_flag("--reproducible", options->reproducible,
                      "The same bits on any processor and from any compiler");
    command->add_option("--step", options->step,
-                       "Time step in s, or auto for the stable one (default: the design's)");
+                       "Time step in s, or auto for the solver's own: the stable one, or with the implicit "
+                       "integrator what the motion asks for (default: the design's)");
    command->add_option("--accuracy", options->accuracy,
                        "Choose integrator and step: the cheapest that keep the first --probe, else "
                        "the cell that moves most, within this error, as 1% or 0.01");

@@ -154,7 +154,7 @@ void addStudyAccuracy(CLI::App &study, Context &context)
    command->add_option("FILE", options->file,
                        "A design of any readable format, - for standard input; default: the samples");
    command->add_option("--sample", options->samples,
-                       "Only this sample: sag, elastica, frequency, stride, flexure");
+                       "Only this sample: sag, elastica, frequency, stride, flexure, stiff-flexure");
    command
        ->add_option("--models", options->models,
                     "Cell models to try beside the design's own where nothing moves, as block,solid")

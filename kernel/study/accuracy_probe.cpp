@@ -18,7 +18,8 @@ constexpr double kCoarsest = 0.9; // of the stable step, as the solver's own
 constexpr std::int64_t kSamples = 32;
 constexpr std::int64_t kFewestSteps = 8; // in the window at the coarsest step: fewer show no motion
 constexpr double kPilotShare = 0.1;      // of the budget, for timing a step
-constexpr double kRunsShare = 0.85;      // of the budget, for the runs
+constexpr double kOwnSteps = 4; // of a solver that chooses its steps by the motion, in the longest one tried
+constexpr double kRunsShare = 0.85; // of the budget, for the runs
 /// A run this many times the window is as far as a growth seen within the window is carried on.
 constexpr double kFarthest = 16;
 /// Of the coarsest step: a law seen over a factor of four is not carried on further than this.
@@ -110,13 +111,24 @@ Status runLadder(const Subject &subject, const ProbeRequest &request, AccuracyPr
    return {};
 }
 
-void fillPresets(double base, AccuracyProbe &probe)
+Result<double> baseStep(const Subject &subject, const ProbeRequest &request, const AccuracyProbe &probe,
+                        const Job &job)
+{
+   if (probe.limit.stableStep > 0)
+      return probe.limit.stableStep;
+   const auto own = ownStep(subject, request.values, probe.errorUntil, kPilotShare * request.budget, job);
+   if (!own)
+      return own.error();
+   return std::min(probe.errorUntil / 20, kOwnSteps * *own);
+}
+
+void fillPresets(AccuracyProbe &probe)
 {
    for (const Preset &preset : kPresets) {
       PresetEstimate estimate;
       estimate.name = preset.name;
       estimate.fraction = preset.fraction;
-      estimate.step = preset.fraction * base;
+      estimate.step = preset.fraction * probe.base;
       // Within a tenth the run at the coarsest step is the preset's own: stretches hold whole steps.
       const bool run = std::abs(estimate.step / probe.step - 1) < 0.1;
       estimate.error = errorOf(probe, run ? probe.step : estimate.step, run);
@@ -164,8 +176,7 @@ Result<Quantity> busiestQuantity(const Subject &subject, const Values &values, d
 
 PresetEstimate estimateAt(const AccuracyProbe &probe, std::string name, double step)
 {
-   const double base = probe.limit.stableStep > 0 ? probe.limit.stableStep : probe.errorUntil / 20;
-   PresetEstimate estimate{std::move(name), step / base, step, errorOf(probe, step, false),
+   PresetEstimate estimate{std::move(name), step / probe.base, step, errorOf(probe, step, false),
                            secondsOf(probe, step, false)};
    if (probe.limit.stableStep > 0 && step > probe.limit.stableStep * (1 + 1e-9))
       estimate.error = {0, Knowledge::unknown, "beyond the stable limit a run diverges"};
@@ -200,8 +211,11 @@ Result<AccuracyProbe> probeAccuracy(const Subject &subject, const ProbeRequest &
    probe.until = probe.errorUntil = request.until;
    if (request.quantity && request.quantity->when == Quantity::When::atTime)
       probe.errorUntil = std::min(probe.until, request.quantity->time);
-   const double base = probe.limit.stableStep > 0 ? probe.limit.stableStep : probe.errorUntil / 20;
-   probe.step = kCoarsest * base;
+   const auto base = baseStep(subject, request, probe, job);
+   if (!base)
+      return base.error();
+   probe.base = *base;
+   probe.step = kCoarsest * probe.base;
    const auto stepSeconds =
        timeStep(subject, request.values, probe.step, probe.until, kPilotShare * request.budget, job);
    if (!stepSeconds)
@@ -221,7 +235,7 @@ Result<AccuracyProbe> probeAccuracy(const Subject &subject, const ProbeRequest &
    }
    if (const Status ran = runLadder(subject, request, probe, job); !ran)
       return ran.error();
-   fillPresets(base, probe);
+   fillPresets(probe);
    probe.probeSeconds = secondsSince(start);
    return probe;
 }

@@ -44,7 +44,7 @@ struct ProbeRequest
 struct PresetEstimate
 {
    std::string name;
-   double fraction = 0; // of the stable step; of a twentieth of the run where the solver has no limit
+   double fraction = 0; // of the probe's base step
    double step = 0;     // s
    Estimate error;      // of the asked run, relative to the quantity's largest value
    Estimate seconds;    // the asked run takes (wall), on this machine
@@ -55,6 +55,9 @@ struct AccuracyProbe
    Quantity quantity;
    double scale = 0; // largest value of the quantity in the probe, what errors are relative to
    StepLimit limit;
+   /// s: the stable step; where the solver has no limit, what it chooses for itself times four, at most a
+   /// twentieth of the run.
+   double base = 0;
    double until = 0;      // s, the asked run
    double errorUntil = 0; // s, the part of it that errors are of: until the quantity's time
    double window = 0;     // s, simulated by the probe: 0 < window <= errorUntil

@@ -20,8 +20,13 @@ using Clock = std::chrono::steady_clock;
 constexpr std::array<std::string_view, 4> kAxes{"integrator", "precision", "gradient", "beam"};
 constexpr std::size_t kSolvingAxes = 2;
 
-constexpr int kLevels = 4;                // step lengths of a ladder, each half of the one before
-constexpr double kCoarsest = 0.9;         // of the stable step
+constexpr int kLevels = 4;        // step lengths of a ladder, each half of the one before
+constexpr double kCoarsest = 0.9; // of the stable step
+/// Solvers that no step can upset choose theirs by the motion; ladders begin at this many of them, and go as
+/// far below.
+constexpr double kOwnSteps = 4;
+constexpr int kLevelsWithoutLimit = 5;
+constexpr double kOwnShare = 0.02;        // of the budget, for seeing such a choice
 constexpr std::int64_t kSamples = 16;     // of a curve
 constexpr std::int64_t kSwings = 512;     // samples where a frequency is wanted: some sixty a swing
 constexpr double kStepsWithoutLimit = 16; // in the run, at the coarsest, for solvers that no step can upset
@@ -140,6 +145,16 @@ Status AccuracyRuns::planMotion(std::size_t variant, const Job &job)
       if (!limit)
          return limit.error();
       ladder.limit = limit->stableStep;
+      ladder.coarsest = kCoarsest * ladder.limit;
+      if (ladder.limit <= 0) {
+         const auto own = ownStep(of.subject, values, m_plan.until, kOwnShare * m_plan.request.budget, job);
+         if (!own && own.error().code == ErrorCode::cancelled)
+            return own.error();
+         // What the solver refuses is told by the runs themselves.
+         ladder.coarsest = m_plan.until / kStepsWithoutLimit;
+         if (own)
+            ladder.coarsest = std::min(ladder.coarsest, kOwnSteps * *own);
+      }
       m_ladders.push_back(std::move(ladder));
    }
    return {};
@@ -172,10 +187,11 @@ void AccuracyRuns::addSteps()
    for (std::size_t k = 0; k < m_ladders.size(); ++k) {
       AccuracyLadder &ladder = m_ladders[k];
       const bool motion = ladder.analysis == Analysis::dynamics;
-      const double coarsest = ladder.limit > 0 ? kCoarsest * ladder.limit : m_plan.until / kStepsWithoutLimit;
       const auto perSample =
-          std::max<std::int64_t>(1, std::llround(std::ceil(stretch / coarsest * (1 - 1e-9))));
-      for (int level = 0; level < (motion ? kLevels : 1); ++level) {
+          motion ? std::max<std::int64_t>(1, std::llround(std::ceil(stretch / ladder.coarsest * (1 - 1e-9))))
+                 : 1;
+      const int levels = !motion ? 1 : ladder.limit > 0 ? kLevels : kLevelsWithoutLimit;
+      for (int level = 0; level < levels; ++level) {
          AccuracyRun one;
          one.ladder = k;
          one.perSample = perSample << level;

@@ -46,6 +46,7 @@ struct AccuracyLadder
    Analysis analysis = Analysis::dynamics;
    bool own = false;              // its model is the scene's own, so that it may serve as reference
    double limit = 0;              // s, stable step; 0 = none
+   double coarsest = 0;           // s, longest step tried
    std::vector<std::size_t> rows; // coarse to fine
    Convergence convergence;       // of the three finest
 };

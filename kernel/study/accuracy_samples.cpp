@@ -168,15 +168,13 @@ AccuracySample stride()
 /// Shear flexure after figure 7-4 of the thesis: two plates joined by two legs with a hinge at either end of
 /// each, 27 cells. A hinge bends like a blade a tenth of a cell thick, and is a cube of a softer stuff here,
 /// so that it can be cut into smaller cells.
-AccuracySample flexure()
+Design flexureOf(const std::string &name, double density, double youngsModulus)
 {
-   AccuracySample sample{"flexure", "Shear flexure of figure 7-4, its cells cut into 1, 8 and 27", {}, {}};
-   Design &design = sample.design;
-   design.name = "flexure";
+   Design design;
+   design.name = name;
    design.model.lattice.pitch = kPitch;
-   constexpr double kStiff = 2e9;
-   const Cell stiff{added(design.model, stuff("stiff", 1000, kStiff)), 0, 0};
-   const Cell hinge{added(design.model, stuff("hinge", 1000, 1e-3 * kStiff)), 0, 0};
+   const Cell stiff{added(design.model, stuff("stiff", density, youngsModulus)), 0, 0};
+   const Cell hinge{added(design.model, stuff("hinge", density, 1e-3 * youngsModulus)), 0, 0};
    CellArray &cells = design.model.root.cells;
    cells.fill({{0, 0, 0}, {0, 5, 0}}, stiff);
    cells.fill({{8, 0, 0}, {8, 6, 0}}, stiff);
@@ -185,7 +183,17 @@ AccuracySample flexure()
       cells.set({1, y, 0}, hinge);
       cells.set({7, y, 0}, hinge);
    }
-   Setup &setup = design.setup;
+   return design;
+}
+
+AccuracySample flexure()
+{
+   constexpr double kStiff = 2e9;
+   AccuracySample sample{"flexure",
+                         "Shear flexure of figure 7-4, its cells cut into 1, 8 and 27",
+                         flexureOf("flexure", 1000, kStiff),
+                         {}};
+   Setup &setup = sample.design.setup;
    setup.supports = {{Box{{0, 0, 0}, {0, 5, 0}}, kAllFreedoms}};
    setup.loads = {{Index{8, 6, 0}, {0, 0.012, 0}, {}}};
    // Pseudo-rigid body: legs 6 mm between hinges of bending stiffness E l^3 / 12; the free plate's mass and a
@@ -205,11 +213,40 @@ AccuracySample flexure()
    return sample;
 }
 
+/// The same of aluminium, whose foot is moved smoothly by a millimetre: slow beside its stiffest bond, whose
+/// oscillation takes 0.6 us.
+AccuracySample stiffFlexure()
+{
+   constexpr double kTime = 0.01, kWay = 1e-3; // s, m
+   constexpr int kPoints = 1000;
+   AccuracySample sample{"stiff-flexure",
+                         "Aluminium flexure of 1 mm cells, its foot moved by 1 mm in 10 ms",
+                         flexureOf("stiff-flexure", 2700, 69e9),
+                         {}};
+   Curve smooth;
+   for (int k = 0; k <= kPoints; ++k) {
+      const double part = static_cast<double>(k) / kPoints;
+      smooth.push_back({kTime * part, kWay / 2 * (1 - std::cos(std::numbers::pi * part))});
+   }
+   const Box foot{{0, 0, 0}, {0, 5, 0}};
+   Setup &setup = sample.design.setup;
+   setup.supports = {{foot, 0x3d}}; // all but y
+   setup.drives = {{foot, 1, smooth}};
+   sample.request.until = kTime;
+   Quantity tip;
+   tip.cell = {8, 6, 0};
+   tip.channel = "y";
+   tip.when = Quantity::When::atTime;
+   tip.time = kTime;
+   sample.request.quantity = tip;
+   return sample;
+}
+
 } // namespace
 
 std::vector<AccuracySample> accuracySamples()
 {
-   return {sag(), elastica(), frequency(), stride(), flexure()};
+   return {sag(), elastica(), frequency(), stride(), flexure(), stiffFlexure()};
 }
 
 } // namespace diatom

@@ -19,7 +19,7 @@ struct AccuracySample
    AccuracyRequest request;
 };
 
-/// A cantilever's sag, an elastica, the frequency of a bar, a walker's stride, and a flexure.
+/// A cantilever's sag, an elastica, the frequency of a bar, a walker's stride, a flexure, and a stiff one.
 std::vector<AccuracySample> accuracySamples();
 
 } // namespace diatom

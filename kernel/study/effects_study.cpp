@@ -75,6 +75,9 @@ Status Race::run()
    double step = 0;
    for (const auto &one : m_simulations)
       step = step > 0 ? std::min(step, kStep * one->stableStep()) : kStep * one->stableStep();
+   if (!(step > 0))
+      return Error{ErrorCode::usage,
+                   "the cost of effects is told by explicit steps; choose such an integrator"};
    for (std::size_t k = 0; k < m_subjects.size(); ++k) {
       auto simulation = startTrial(m_subjects[k], {}, step, m_job);
       if (!simulation)

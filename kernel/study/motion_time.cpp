@@ -1,5 +1,8 @@
 #include "study/motion_time.h"
 
+#include "study/settings.h"
+#include "study/step_limit.h"
+
 #include <algorithm>
 
 namespace diatom {
@@ -21,6 +24,20 @@ double slowestPeriod(const Setup &setup)
    return period;
 }
 
+/// What looks are told in: the stable step, also where the scene is stepped without such a limit.
+Result<double> lookStep(const Subject &subject, double stable, const Job &job)
+{
+   constexpr std::string_view kAxis[] = {"integrator"};
+   if (stable > 0)
+      return stable;
+   const auto choices =
+       solverChoices(*subject.catalogue, subject.setup.solver, subject.setup.solverValues, kAxis);
+   for (const Values &values : combinations(choices))
+      if (const auto limit = findStepLimit(subject, values, job); limit && limit->stableStep > 0)
+         return limit->stableStep;
+   return Error{ErrorCode::usage, "nothing tells how long this scene moves; say how long to watch it"};
+}
+
 } // namespace
 
 Result<double> motionTime(const Subject &subject, const Job &job)
@@ -32,7 +49,10 @@ Result<double> motionTime(const Subject &subject, const Job &job)
    if (const double period = slowestPeriod(subject.setup);
        period > 0 && !simulation.scene().networks().actuators.empty())
       return period;
-   const double most = kMostSteps * simulation.stableStep(), stretch = kStretch * simulation.stableStep();
+   const auto step = lookStep(subject, simulation.stableStep(), job);
+   if (!step)
+      return step.error();
+   const double most = kMostSteps * *step, stretch = kStretch * *step;
    simulation.setGoal(most);
    double peak = 0, stopped = 0;
    for (int look = 1; look * stretch < most; ++look) {

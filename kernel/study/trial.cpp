@@ -141,4 +141,24 @@ Result<double> timeStep(const Subject &subject, const Values &values, double ste
    return median(times);
 }
 
+Result<double> ownStep(const Subject &subject, const Values &values, double until, double seconds,
+                       const Job &job)
+{
+   using Clock = std::chrono::steady_clock;
+   constexpr int kStretches = 64; // after each of which the clock is looked at
+   auto started = startTrial(subject, values, 0, job);
+   if (!started)
+      return started.error();
+   Simulation &simulation = **started;
+   simulation.setGoal(until);
+   const auto start = Clock::now();
+   for (int k = 1; k <= kStretches; ++k) {
+      if (const Status advanced = simulation.advance(until * k / kStretches, job); !advanced)
+         return advanced.error();
+      if (std::chrono::duration<double>(Clock::now() - start).count() > seconds)
+         break;
+   }
+   return simulation.time() / static_cast<double>(std::max<std::int64_t>(1, simulation.steps()));
+}
+
 } // namespace diatom

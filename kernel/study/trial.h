@@ -57,6 +57,11 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
 Result<double> timeStep(const Subject &subject, const Values &values, double step, double until,
                         double seconds, const Job &job);
 
+/// Mean length (s) of the steps that a solver without a stable limit chooses for itself, up to `until` or as
+/// far as it comes in `seconds` of wall time.
+Result<double> ownStep(const Subject &subject, const Values &values, double until, double seconds,
+                       const Job &job);
+
 /// Median; 0 of nothing.
 double median(std::vector<double> values);
 

@@ -196,6 +196,7 @@ struct SolverChoice
    std::string precision = "f64";
    double reproducible = 0;
    std::string instructions = "best";
+   double numericalDamping = 0.2, stepTolerance = 1e-3;
 };
 
 /// A running solver.
@@ -204,22 +205,33 @@ class Run
 public:
    explicit Run(HandScene &scene, const SolverChoice &choice = {}, int threads = 1) : host(threads)
    {
-      const char *names[] = {"integrator", "beam",  "gradient",  "safety",       "force_step",
-                             "load_steps", "modes", "precision", "reproducible", "instructions"};
-      const double numbers[] = {
-          0, 0, 0, choice.safety, choice.forceStep, choice.loadSteps, choice.modes, 0, choice.reproducible,
-          0};
-      const char *texts[] = {choice.integrator.c_str(),
-                             choice.beam.c_str(),
-                             choice.gradient.c_str(),
-                             "",
-                             "",
-                             "",
-                             "",
-                             choice.precision.c_str(),
-                             "",
-                             choice.instructions.c_str()};
-      const diatom_values values{sizeof(diatom_values), 10, names, numbers, texts};
+      struct Value
+      {
+         const char *name;
+         double number;
+         const char *text;
+      };
+      const Value all[] = {{"integrator", 0, choice.integrator.c_str()},
+                           {"beam", 0, choice.beam.c_str()},
+                           {"gradient", 0, choice.gradient.c_str()},
+                           {"safety", choice.safety, ""},
+                           {"force_step", choice.forceStep, ""},
+                           {"load_steps", choice.loadSteps, ""},
+                           {"modes", choice.modes, ""},
+                           {"precision", 0, choice.precision.c_str()},
+                           {"reproducible", choice.reproducible, ""},
+                           {"instructions", 0, choice.instructions.c_str()},
+                           {"numerical_damping", choice.numericalDamping, ""},
+                           {"step_tolerance", choice.stepTolerance, ""}};
+      std::vector<const char *> names, texts;
+      std::vector<double> numbers;
+      for (const Value &one : all) {
+         names.push_back(one.name);
+         numbers.push_back(one.number);
+         texts.push_back(one.text);
+      }
+      const diatom_values values{sizeof(diatom_values), static_cast<std::int64_t>(names.size()), names.data(),
+                                 numbers.data(), texts.data()};
       const diatom_create create{sizeof(diatom_create), "org.diatom_cad.solver.bonds", "", &values};
       estimate.size = sizeof estimate;
       if (!table) {

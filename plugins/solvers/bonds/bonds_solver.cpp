@@ -3,6 +3,7 @@
 #include "equilibrium/modal_run.h"
 #include "equilibrium/static_run.h"
 #include "explicit/explicit_run.h"
+#include "implicit/implicit_run.h"
 
 namespace bonds {
 
@@ -21,12 +22,12 @@ const diatom_capabilities &BondsSolver::capabilities()
 
 namespace {
 
-enum class Asked { motion, balance, modes };
+enum class Asked { motion, implicitMotion, balance, modes };
 
-Asked askedOf(std::string_view analysis)
+Asked askedOf(std::string_view analysis, const Options &options)
 {
    if (analysis == "dynamics")
-      return Asked::motion;
+      return options.integrator == Options::Integrator::implicit ? Asked::implicitMotion : Asked::motion;
    if (analysis == "statics")
       return Asked::balance;
    if (analysis == "modes")
@@ -41,9 +42,11 @@ void BondsSolver::estimate(sdk::Call, sdk::Values values, const sdk::SceneView &
                            diatom_estimate &estimate)
 {
    const Options options = Options::from(values);
-   switch (askedOf(scene.analysis())) {
+   switch (askedOf(scene.analysis(), options)) {
    case Asked::motion:
       return ExplicitRun::estimate(options, scene, estimate);
+   case Asked::implicitMotion:
+      return ImplicitRun::estimate(options, scene, estimate);
    case Asked::balance:
       return StaticRun::estimate(options, scene, estimate);
    case Asked::modes:
@@ -54,13 +57,16 @@ void BondsSolver::estimate(sdk::Call, sdk::Values values, const sdk::SceneView &
 BondsSolver::BondsSolver(sdk::Call call, sdk::Values values, const sdk::SceneView &scene)
 {
    const Options options = Options::from(values);
-   switch (askedOf(scene.analysis())) {
+   switch (askedOf(scene.analysis(), options)) {
    case Asked::motion: {
       auto run = std::make_unique<ExplicitRun>(options, scene);
       call.report(DIATOM_INFO, run->how());
       m_analysis = std::move(run);
       break;
    }
+   case Asked::implicitMotion:
+      m_analysis = std::make_unique<ImplicitRun>(options, values, scene);
+      break;
    case Asked::balance:
       m_analysis = std::make_unique<StaticRun>(options, values, scene);
       break;

@@ -245,12 +245,17 @@ void Balance::stiffness(const sdk::Call &call, const State &state, const Loading
          cellStiffness(i, state, loading.rest, dampingOverTime, out);
       }
    });
+   double factor = 1;
+   const AddBlock add = [&](std::int64_t row, std::int64_t column, const double *block) {
+      out[out.find(row, column)] +=
+          factor * Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(block);
+   };
    for (const auto &coupling : m_couplings)
-      coupling->addStiffness(state, restOf(loading.rest),
-                             [&](std::int64_t row, std::int64_t column, const double *block) {
-                                out[out.find(row, column)] +=
-                                    Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(block);
-                             });
+      coupling->addStiffness(state, restOf(loading.rest), add);
+   factor = dampingOverTime;
+   for (const auto &coupling : m_couplings)
+      if (dampingOverTime > 0)
+         coupling->addDamping(state, add);
 }
 
 double Balance::elasticEnergy(const State &state, const RestShape &rest) const

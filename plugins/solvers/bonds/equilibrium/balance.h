@@ -65,7 +65,7 @@ public:
 
    BlockMatrix pattern() const;
    /// Exact derivative of the negative forces by displacement and spin. `dampingOverTime` (1/s) times the
-   /// damping is added to the stiffness of bonds: implicit steps need both at once.
+   /// damping is added to the stiffness: implicit steps need both at once.
    void stiffness(const sdk::Call &call, const State &state, const Loading &loading, double dampingOverTime,
                   BlockMatrix &out) const;
 

@@ -1,5 +1,6 @@
 #include "equilibrium/supports.h"
 
+#include <cmath>
 #include <string>
 
 namespace bonds {
@@ -63,11 +64,19 @@ void Supports::setCurves(std::span<const diatom_channel> channels)
    m_curves = std::move(curves);
 }
 
+double Supports::farthest(const Driven &driven) const
+{
+   double most = 0;
+   for (const double value : m_curves[driven.curve].value)
+      most = std::max(most, std::abs(value));
+   return most;
+}
+
 Column Supports::targets(double time) const
 {
    Column out;
    for (const Driven &driven : m_driven)
-      out.push_back(m_curves[driven.curve].at(time));
+      out.push_back(valueOf(driven, time));
    return out;
 }
 

@@ -35,6 +35,9 @@ public:
    const std::vector<Driven> &driven() const { return m_driven; }
    /// Where the curves have the driven degrees of freedom at a time.
    Column targets(double time) const;
+   double valueOf(const Driven &driven, double time) const { return m_curves[driven.curve].at(time); }
+   /// Largest magnitude on the way of a driven degree of freedom.
+   double farthest(const Driven &driven) const;
    void setCurves(std::span<const diatom_channel> channels);
 
 private:

@@ -13,13 +13,15 @@ Options Options::from(const sdk::Values &values)
    Options o;
    const auto integrator = values.text("integrator"), beam = values.text("beam"),
               gradient = values.text("gradient");
-   if (integrator != "semi_implicit" && integrator != "verlet" && integrator != "rk4")
+   if (integrator != "semi_implicit" && integrator != "verlet" && integrator != "rk4" &&
+       integrator != "implicit")
       throw Failure(DIATOM_BAD_INPUT, "unknown integrator \"" + std::string(integrator) + "\"");
    if (beam != "timoshenko" && beam != "thesis" && beam != "euler")
       throw Failure(DIATOM_BAD_INPUT, "unknown beam theory \"" + std::string(beam) + "\"");
-   o.integrator = integrator == "rk4"      ? Integrator::rungeKutta
-                  : integrator == "verlet" ? Integrator::verlet
-                                           : Integrator::semiImplicit;
+   o.integrator = integrator == "rk4"        ? Integrator::rungeKutta
+                  : integrator == "verlet"   ? Integrator::verlet
+                  : integrator == "implicit" ? Integrator::implicit
+                                             : Integrator::semiImplicit;
    o.beam = beam == "thesis" ? Beam::thesis : beam == "euler" ? Beam::euler : Beam::timoshenko;
    const auto precision = values.text("precision");
    if (precision != "f64" && precision != "f32")

@@ -19,7 +19,7 @@ using Column = std::vector<double>;
 /// How the user asked for it.
 struct Options
 {
-   enum class Integrator { semiImplicit, verlet, rungeKutta };
+   enum class Integrator { semiImplicit, verlet, rungeKutta, implicit };
    Integrator integrator = Integrator::semiImplicit;
    Beam beam = Beam::timoshenko;
    bool exact = true;

@@ -19,14 +19,23 @@ double energyOf(const Assembly &assembly, const State &state, const RestShape *r
 
 } // namespace
 
+double kineticEnergy(const Assembly &assembly, const State &state)
+{
+   double sum = 0;
+   for (std::int64_t i = 0; i < assembly.cells; ++i) {
+      const Vec3 v = state.velocityOf(i), w = state.spinOf(i);
+      sum += 0.5 * (assembly.mass[i] * dot(v, v) + dot(w, spinMomentum(assembly, i, state.turnOf(i), w)));
+   }
+   return sum;
+}
+
 Energies energies(const Assembly &assembly, const Couplings &couplings, const State &state,
                   const RestShape *rest)
 {
    Energies out;
+   out.kinetic = kineticEnergy(assembly, state);
    for (std::int64_t i = 0; i < assembly.cells; ++i) {
-      const Vec3 v = state.velocityOf(i), w = state.spinOf(i), u = state.displacementOf(i);
-      out.kinetic +=
-          0.5 * (assembly.mass[i] * dot(v, v) + dot(w, spinMomentum(assembly, i, state.turnOf(i), w)));
+      const Vec3 u = state.displacementOf(i);
       if (assembly.hasGravity)
          out.gravity -=
              assembly.mass[i] * dot({assembly.gravity[0], assembly.gravity[1], assembly.gravity[2]}, u);

@@ -15,6 +15,8 @@ struct Energies
 Energies energies(const Assembly &assembly, const Couplings &couplings, const State &state,
                   const RestShape *rest);
 
+double kineticEnergy(const Assembly &assembly, const State &state);
+
 struct Momenta
 {
    Vec3 linear, angular; // angular about the origin
