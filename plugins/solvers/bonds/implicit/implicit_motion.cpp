@@ -60,7 +60,7 @@ const Vector &ImplicitMotion::forcesNow(const sdk::Call &call)
 {
    const Vector still = Vector::Zero(6 * m_now.state.n);
    Vector unbalanced;
-   Motion here = m_now;
+   Kinematics here = m_now;
    here.rate.setZero();
    m_equations.begin(m_now, 1, m_loading);
    m_equations.residual(call, still, here, unbalanced);

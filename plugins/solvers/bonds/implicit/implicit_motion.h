@@ -39,7 +39,7 @@ public:
    /// Makes the forces that are read those of the very moment.
    void settle(const sdk::Call &call);
 
-   const Motion &motion() const { return m_now; }
+   const Kinematics &motion() const { return m_now; }
    const Loading &loading() const { return m_loading; }
    const Vector &internal() const { return m_internal; }
    Vector reaction() const;
@@ -62,7 +62,7 @@ private:
    ImplicitOptions m_options;
    StepEquations m_equations;
    StepNewton m_newton;
-   Motion m_now, m_from, m_next; // `m_from` has in it what jumps
+   Kinematics m_now, m_from, m_next; // `m_from` has in it what jumps
    Loading m_loading, m_nextLoading;
    Vector m_increment;
    Vector m_jump;                 // accelerations that set in at once; empty without

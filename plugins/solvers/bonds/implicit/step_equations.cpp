@@ -33,7 +33,7 @@ StepEquations::StepEquations(const Balance &balance, double numericalDamping)
 
 // The auxiliary acceleration is that at a fixed part of a step later: a step of another length needs another
 // one, or the order is lost.
-Vector StepEquations::carriedFor(const Motion &motion, double h) const
+Vector StepEquations::carriedFor(const Kinematics &motion, double h) const
 {
    constexpr double kMostGrowth = 2; // after a stretch of far shorter steps
    if (motion.step == 0 || motion.step == h)
@@ -41,7 +41,7 @@ Vector StepEquations::carriedFor(const Motion &motion, double h) const
    return motion.rate + std::min(h / motion.step, kMostGrowth) * (motion.carried - motion.rate);
 }
 
-void StepEquations::begin(const Motion &from, double h, const Loading &loading)
+void StepEquations::begin(const Kinematics &from, double h, const Loading &loading)
 {
    m_from = &from;
    m_loading = &loading;
@@ -84,7 +84,7 @@ void StepEquations::turnOn(const Vector &change, Vector &increment)
    }
 }
 
-void StepEquations::move(const Vector &increment, Motion &to) const
+void StepEquations::move(const Vector &increment, Kinematics &to) const
 {
    const State &from = m_from->state;
    const double h = m_step, beta = m_method.beta, gamma = m_method.gamma, f = m_method.force,
@@ -117,7 +117,7 @@ void StepEquations::move(const Vector &increment, Motion &to) const
    }
 }
 
-Measure StepEquations::residual(const sdk::Call &call, const Vector &increment, Motion &to, Vector &out)
+Measure StepEquations::residual(const sdk::Call &call, const Vector &increment, Kinematics &to, Vector &out)
 {
    Measure measure;
    m_power =
@@ -137,7 +137,7 @@ Measure StepEquations::residual(const sdk::Call &call, const Vector &increment, 
 }
 
 /// Drag, and of the ground what a balance leaves out: damping and friction.
-void StepEquations::addOutside(const Vector &increment, Motion &to, Measure &measure)
+void StepEquations::addOutside(const Vector &increment, Kinematics &to, Measure &measure)
 {
    const Assembly &assembly = m_balance->assembly();
    m_ground = Vector::Zero(assembly.hasGround ? m_exerted.size() : 0);
@@ -166,7 +166,7 @@ void StepEquations::addOutside(const Vector &increment, Motion &to, Measure &mea
    }
 }
 
-void StepEquations::tangent(const sdk::Call &call, const Vector &increment, const Motion &to,
+void StepEquations::tangent(const sdk::Call &call, const Vector &increment, const Kinematics &to,
                             BlockMatrix &out)
 {
    const Assembly &assembly = m_balance->assembly();

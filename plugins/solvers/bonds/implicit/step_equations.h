@@ -6,7 +6,7 @@
 #include "equilibrium/balance.h"
 #include "implicit/alpha_method.h"
 #include "implicit/implicit_contact.h"
-#include "implicit/motion.h"
+#include "implicit/kinematics.h"
 
 namespace bonds {
 
@@ -17,19 +17,19 @@ public:
 
    const AlphaMethod &method() const { return m_method; }
    /// The auxiliary acceleration where steps of length h go on from `motion`.
-   Vector carriedFor(const Motion &motion, double h) const;
+   Vector carriedFor(const Kinematics &motion, double h) const;
    /// Sets out from `from` over h, to where `loading` pulls. Both must stay.
-   void begin(const Motion &from, double h, const Loading &loading);
+   void begin(const Kinematics &from, double h, const Loading &loading);
    /// A first guess of the increments: this part of the way that speeds tell. Driven ones are right.
    Vector predicted(double part) const;
    /// Changes increments by displacements and spins at the end of the step.
    static void turnOn(const Vector &change, Vector &increment);
    /// What increments lead to.
-   void move(const Vector &increment, Motion &to) const;
+   void move(const Vector &increment, Kinematics &to) const;
    /// Forces out of balance with inertia, held degrees of freedom included; friction settles in `to`.
-   Measure residual(const sdk::Call &call, const Vector &increment, Motion &to, Vector &out);
+   Measure residual(const sdk::Call &call, const Vector &increment, Kinematics &to, Vector &out);
    /// Negative derivative of the residual by displacement and spin, changes of frame within a step left out.
-   void tangent(const sdk::Call &call, const Vector &increment, const Motion &to, BlockMatrix &out);
+   void tangent(const sdk::Call &call, const Vector &increment, const Kinematics &to, BlockMatrix &out);
 
    double step() const { return m_step; }
    /// Of the last residual: power of damping (W), what bonds and couplings exert, what they and the loads
@@ -40,12 +40,12 @@ public:
    const Vector &ground() const { return m_ground; }
 
 private:
-   void addOutside(const Vector &increment, Motion &to, Measure &measure);
+   void addOutside(const Vector &increment, Kinematics &to, Measure &measure);
    double slope(const Driven &driven) const;
 
    const Balance *m_balance;
    AlphaMethod m_method;
-   const Motion *m_from = nullptr;
+   const Kinematics *m_from = nullptr;
    const Loading *m_loading = nullptr;
    Vector m_carried;
    double m_step = 0, m_power = 0;

@@ -60,7 +60,7 @@ double StepNewton::rounding(const State &state) const
 }
 
 void StepNewton::refresh(const sdk::Call &call, StepEquations &equations, const Vector &increment,
-                         const Motion &to)
+                         const Kinematics &to)
 {
    equations.tangent(call, increment, to, m_matrix);
    m_inverse->compute(call, m_matrix, placesOf(m_balance->assembly(), to.state));
@@ -74,7 +74,7 @@ void StepNewton::refresh(const sdk::Call &call, StepEquations &equations, const 
    ++m_factorisations;
 }
 
-void StepNewton::prepare(const sdk::Call &call, StepEquations &equations, Motion &room)
+void StepNewton::prepare(const sdk::Call &call, StepEquations &equations, Kinematics &room)
 {
    const Vector still = Vector::Zero(6 * room.state.n);
    equations.move(still, room);
@@ -97,7 +97,7 @@ void StepNewton::filter(const sdk::Call &call, const Vector &r, Vector &x) const
 
 /// Finds a faster way to the next correction; false when there is none left.
 bool StepNewton::improve(const sdk::Call &call, StepEquations &equations, const Vector &increment,
-                         const Motion &to, Pass &pass)
+                         const Kinematics &to, Pass &pass)
 {
    if (!pass.fresh) {
       refresh(call, equations, increment, to);
@@ -115,7 +115,7 @@ bool StepNewton::improve(const sdk::Call &call, StepEquations &equations, const 
 }
 
 StepNewton::End StepNewton::solve(const sdk::Call &call, StepEquations &equations, Vector &increment,
-                                  Motion &to)
+                                  Kinematics &to)
 {
    increment = equations.predicted(1);
    const End end = solveFrom(call, equations, increment, to);
@@ -129,7 +129,7 @@ StepNewton::End StepNewton::solve(const sdk::Call &call, StepEquations &equation
 
 /// With a first guess of the increments.
 StepNewton::End StepNewton::solveFrom(const sdk::Call &call, StepEquations &equations, Vector &increment,
-                                      Motion &to)
+                                      Kinematics &to)
 {
    Pass pass;
    equations.move(increment, to);

@@ -14,9 +14,9 @@ public:
 
    enum class End { converged, failed, cancelled };
    /// Finds the increments of a step that was begun, and what they lead to.
-   End solve(const sdk::Call &call, StepEquations &equations, Vector &increment, Motion &to);
+   End solve(const sdk::Call &call, StepEquations &equations, Vector &increment, Kinematics &to);
    /// Takes the tangent where a step begins; `room` is for the state there.
-   void prepare(const sdk::Call &call, StepEquations &equations, Motion &room);
+   void prepare(const sdk::Call &call, StepEquations &equations, Kinematics &room);
    /// x = A^-1 r with the last tangent A, roughly where it is not factorised.
    void filter(const sdk::Call &call, const Vector &r, Vector &x) const;
    /// The next step wants a tangent of its own.
@@ -28,7 +28,7 @@ public:
    double largest(const Vector &change) const;
 
 private:
-   End solveFrom(const sdk::Call &call, StepEquations &equations, Vector &increment, Motion &to);
+   End solveFrom(const sdk::Call &call, StepEquations &equations, Vector &increment, Kinematics &to);
    /// Of one step.
    struct Pass
    {
@@ -37,10 +37,11 @@ private:
       bool fresh = false;   // the tangent is of this step
       bool careful = false; // with what is not symmetric in it
    };
-   void refresh(const sdk::Call &call, StepEquations &equations, const Vector &increment, const Motion &to);
+   void refresh(const sdk::Call &call, StepEquations &equations, const Vector &increment,
+                const Kinematics &to);
    void correct(const sdk::Call &call, const Pass &pass, const Vector &r, Vector &change) const;
-   bool improve(const sdk::Call &call, StepEquations &equations, const Vector &increment, const Motion &to,
-                Pass &pass);
+   bool improve(const sdk::Call &call, StepEquations &equations, const Vector &increment,
+                const Kinematics &to, Pass &pass);
    double rounding(const State &state) const;
 
    const Balance *m_balance;

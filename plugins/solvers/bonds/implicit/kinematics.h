@@ -7,9 +7,9 @@
 namespace bonds {
 
 /// Vectors hold 6 numbers a cell: along the world axes, then about them.
-struct Motion
+struct Kinematics
 {
-   explicit Motion(std::int64_t cells)
+   explicit Kinematics(std::int64_t cells)
        : state(cells), rate(Vector::Zero(6 * cells)), carried(rate), trend(rate)
    {}
 
