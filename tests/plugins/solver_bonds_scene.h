@@ -193,6 +193,7 @@ struct SolverChoice
    std::string integrator = "semi_implicit", beam = "timoshenko", gradient = "exact";
    double safety = 0.9, forceStep = 0;
    double loadSteps = 0, modes = 10;
+   std::string junction = "stepped", modesFrom = "lowest";
 };
 
 /// A running solver.
@@ -201,11 +202,14 @@ class Run
 public:
    explicit Run(HandScene &scene, const SolverChoice &choice = {}, int threads = 1) : host(threads)
    {
-      const char *names[] = {"integrator", "beam", "gradient", "safety", "force_step", "load_steps", "modes"};
-      const double numbers[] = {0, 0, 0, choice.safety, choice.forceStep, choice.loadSteps, choice.modes};
+      const char *names[] = {"integrator", "beam",  "gradient", "safety",    "force_step",
+                             "load_steps", "modes", "junction", "modes_from"};
+      const double numbers[] = {0, 0, 0, choice.safety, choice.forceStep, choice.loadSteps, choice.modes,
+                                0, 0};
       const char *texts[] = {
-          choice.integrator.c_str(), choice.beam.c_str(), choice.gradient.c_str(), "", "", "", ""};
-      const diatom_values values{sizeof(diatom_values), 7, names, numbers, texts};
+          choice.integrator.c_str(), choice.beam.c_str(),     choice.gradient.c_str(), "", "", "", "",
+          choice.junction.c_str(),   choice.modesFrom.c_str()};
+      const diatom_values values{sizeof(diatom_values), 9, names, numbers, texts};
       const diatom_create create{sizeof(diatom_create), "org.diatom_cad.solver.bonds", "", &values};
       estimate.size = sizeof estimate;
       if (!table) {
