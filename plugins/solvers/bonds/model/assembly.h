@@ -22,6 +22,7 @@ struct Options
    enum class Integrator { semiImplicit, verlet, rungeKutta };
    Integrator integrator = Integrator::semiImplicit;
    Beam beam = Beam::timoshenko;
+   bool stepped = true; // bonds between unlike cells are stepped beams
    bool exact = true;
    double safety = 0.9;
    bool forceStep = false;
