@@ -184,12 +184,16 @@ bool growUntilSharp(const sdk::Call &call, RitzSpace &space, std::size_t wanted)
 {
    Eigen::VectorXd values;
    Eigen::MatrixXd vectors;
+   std::size_t look = wanted + RitzSpace::kStarts;
    while (!call.cancelled() && !space.full() && space.done() < kMostVectors) {
       if (!space.grow(call))
          return false;
-      if (space.done() % RitzSpace::kStarts == 0 && space.done() >= wanted + RitzSpace::kStarts &&
-          space.sharp(values, vectors) >= wanted + 1)
-         break; // one more than asked for: none before has been overlooked
+      if (space.done() >= look) {
+         if (space.sharp(values, vectors) >= wanted + 1)
+            break; // one more than asked for: none before has been overlooked
+         // A look costs the cube of what is there; looked at ever later, all of them cost little.
+         look = space.done() + std::max(RitzSpace::kStarts, space.done() / 8);
+      }
       call.progress(std::min(1.0, static_cast<double>(space.done()) / static_cast<double>(8 * wanted)),
                     "seeking modes");
    }
