@@ -25,5 +25,6 @@ void addRender(CLI::App &app, Context &context);
 void addDo(CLI::App &app, Context &context);
 void addBench(CLI::App &app, Context &context);
 void addStudy(CLI::App &app, Context &context);
+void addVerify(CLI::App &app, Context &context);
 
 } // namespace diatom::cli

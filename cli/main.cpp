@@ -10,7 +10,7 @@ namespace {
 constexpr AddCommand kCommands[] = {
     addInfo,     addCheck, addConvert,  addDo,      addExport,  addPlan,     addRender,
     addSimulate, addSolve, addModes,    addEffects, addCircuit, addPipeline, addPlugins,
-    addLattices, addParts, addMachines, addSolvers, addBench,   addStudy,
+    addLattices, addParts, addMachines, addSolvers, addBench,   addStudy,    addVerify,
 };
 
 } // namespace

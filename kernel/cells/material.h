@@ -8,9 +8,9 @@
 
 namespace diatom {
 
-/// Fifteen stiffness constants of a cell's bonds, in the cell's own axes (amoeba.md 1.3): axial N/m per bond
-/// axis; shear N/m [bond axis][displacement axis], diagonal unused; bending and torsion N m/rad per rotation
-/// axis.
+/// Fifteen constants of a cell's bonds, in the cell's own axes (amoeba.md 1.3): axial per bond axis; shear
+/// [bond axis][displacement axis], diagonal unused; bending and torsion per rotation axis. Stiffnesses are in
+/// N/m and N m/rad, dampings in N s/m and N m s/rad.
 struct BondConstants
 {
    std::array<double, 3> axial{};
@@ -46,8 +46,11 @@ struct Material
    double density = 1000;      // kg/m3
    double youngsModulus = 1e6; // Pa
    double poissonRatio = 0.3;
-   double dampingRatio = 0;            // of each bond, 1 = critical
-   std::optional<BondConstants> bonds; // instead of E and nu
+   double dampingRatio = 0;               // of each bond, 1 = critical
+   std::optional<BondConstants> bonds;    // instead of E and nu
+   std::optional<BondConstants> dampings; // instead of the damping ratio
+   /// Principal moments of inertia of a cell in its own axes, kg m2; instead of those of a full box.
+   std::optional<std::array<double, 3>> inertia;
    CellModel cellModel = CellModel::bond;
    bool poissonCoupling = false; // of bonded cells: asks for the effect "poisson"
    ElectricalRole role = ElectricalRole::insulator;

@@ -42,6 +42,15 @@ private:
    std::vector<DefinitionId> m_chain;
 };
 
+void hashConstants(Hasher &hasher, const BondConstants &constants)
+{
+   for (std::size_t axis = 0; axis < 3; ++axis) {
+      hasher.add(std::span<const double>(constants.shear[axis]));
+      for (const double v : {constants.axial[axis], constants.bending[axis], constants.torsion[axis]})
+         hasher.add(v);
+   }
+}
+
 void hashMaterial(Hasher &hasher, const Material &m)
 {
    hasher.add(m.id);
@@ -51,24 +60,27 @@ void hashMaterial(Hasher &hasher, const Material &m)
    for (const double v : {m.density, m.youngsModulus, m.poissonRatio, m.dampingRatio})
       hasher.add(v);
    hasher.add(m.bonds.has_value());
-   if (m.bonds) {
-      for (int a = 0; a < 3; ++a) {
-         const auto axis = static_cast<std::size_t>(a);
-         hasher.add(std::span<const double>(m.bonds->shear[axis]));
-         for (const double v : {m.bonds->axial[axis], m.bonds->bending[axis], m.bonds->torsion[axis]})
-            hasher.add(v);
-      }
-   }
+   if (m.bonds)
+      hashConstants(hasher, *m.bonds);
    hasher.add(m.role);
    hasher.add(m.ports);
    hasher.add(m.actuation.mode);
    hasher.add(m.actuation.axis);
    hasher.add(m.actuation.strainPerVolt);
    hasher.add(m.actuation.axisFromWires);
-   if (m.cellModel == CellModel::bond && !m.poissonCoupling)
+   const bool given = m.dampings || m.inertia;
+   if (m.cellModel == CellModel::bond && !m.poissonCoupling && !given)
       return; // designs of before there was a choice keep their hash
    hasher.add(m.cellModel);
    hasher.add(m.poissonCoupling);
+   if (!given)
+      return;
+   hasher.add(m.dampings.has_value());
+   if (m.dampings)
+      hashConstants(hasher, *m.dampings);
+   hasher.add(m.inertia.has_value());
+   if (m.inertia)
+      hasher.add(std::span<const double>(*m.inertia));
 }
 
 void hashLattice(Hasher &hasher, const LatticeSpec &lattice)

@@ -141,6 +141,8 @@ constexpr CommandParameter kSetMaterial[] = {
     {"cell_model", "text", false, "bond, block (bonds with constants for filled blocks) or solid"},
     {"poisson_coupling", "boolean", false, "sideways strain follows axial strain in bonds"},
     {"bonds", "object", false, "the fifteen stiffnesses, instead of Young's modulus and Poisson's ratio"},
+    {"dampings", "object", false, "the fifteen dampings, instead of the damping ratio"},
+    {"inertia_kg_m2", "list", false, "of a cell about its own axes, instead of that of a full box"},
     {"ports", "list", false, "faces that conduct: \"-x\", \"+x\", ..."},
     {"actuation", "object", false, "mode, axis, strain_per_V, axis_from_wires"},
 };

@@ -11,15 +11,20 @@ constexpr const char *kPortNames[] = {"-x", "+x", "-y", "+y", "-z", "+z"};
 constexpr std::uint8_t kAllPorts = 0x3f;
 constexpr const char *kCellModels[] = {"bond", "block", "solid"};
 
-ordered_json bondsJson(const BondConstants &bonds)
+/// Keys of the four kinds of constants, axial, shear, bending and torsion.
+using ConstantKeys = std::array<const char *, 4>;
+constexpr ConstantKeys kStiffnesses{"axial_N_m", "shear_N_m", "bending_N_m_rad", "torsion_N_m_rad"};
+constexpr ConstantKeys kDampings{"axial_N_s_m", "shear_N_s_m", "bending_N_m_s_rad", "torsion_N_m_s_rad"};
+
+ordered_json constantsJson(const BondConstants &constants, const ConstantKeys &keys)
 {
-   return {{"axial_N_m", bonds.axial},
-           {"shear_N_m", bonds.shear},
-           {"bending_N_m_rad", bonds.bending},
-           {"torsion_N_m_rad", bonds.torsion}};
+   return {{keys[0], constants.axial},
+           {keys[1], constants.shear},
+           {keys[2], constants.bending},
+           {keys[3], constants.torsion}};
 }
 
-std::array<double, 3> stiffness3(const JsonPlace &place)
+std::array<double, 3> constants3(const JsonPlace &place)
 {
    std::array<double, 3> values{};
    if (place.array(3))
@@ -28,20 +33,29 @@ std::array<double, 3> stiffness3(const JsonPlace &place)
    return values;
 }
 
-BondConstants readBonds(const JsonPlace &place)
+BondConstants readConstants(const JsonPlace &place, const ConstantKeys &keys)
 {
-   BondConstants bonds;
+   BondConstants constants;
    if (!place.object())
-      return bonds;
-   place.known({"axial_N_m", "shear_N_m", "bending_N_m_rad", "torsion_N_m_rad"});
-   bonds.axial = stiffness3(place.at("axial_N_m"));
-   const auto shear = place.at("shear_N_m");
+      return constants;
+   place.known({keys[0], keys[1], keys[2], keys[3]});
+   constants.axial = constants3(place.at(keys[0]));
+   const auto shear = place.at(keys[1]);
    if (shear.array(3))
       for (std::size_t a = 0; a < 3; ++a)
-         bonds.shear[a] = stiffness3(shear.at(a));
-   bonds.bending = stiffness3(place.at("bending_N_m_rad"));
-   bonds.torsion = stiffness3(place.at("torsion_N_m_rad"));
-   return bonds;
+         constants.shear[a] = constants3(shear.at(a));
+   constants.bending = constants3(place.at(keys[2]));
+   constants.torsion = constants3(place.at(keys[3]));
+   return constants;
+}
+
+std::array<double, 3> readInertia(const JsonPlace &place)
+{
+   std::array<double, 3> inertia{1, 1, 1};
+   if (place.array(3))
+      for (std::size_t a = 0; a < 3; ++a)
+         inertia[a] = place.at(a).number(1e-60, 1e60); // zero would make infinite frequencies
+   return inertia;
 }
 
 ordered_json actuationJson(const Actuation &actuation)
@@ -91,7 +105,11 @@ ordered_json materialJson(const Material &material)
                         {"damping_ratio", material.dampingRatio},
                         {"role", kRoles[static_cast<std::size_t>(material.role)]}};
    if (material.bonds)
-      json["bonds"] = bondsJson(*material.bonds);
+      json["bonds"] = constantsJson(*material.bonds, kStiffnesses);
+   if (material.dampings)
+      json["dampings"] = constantsJson(*material.dampings, kDampings);
+   if (material.inertia)
+      json["inertia_kg_m2"] = *material.inertia;
    if (material.cellModel != CellModel::bond)
       json["cell_model"] = kCellModels[static_cast<std::size_t>(material.cellModel)];
    if (material.poissonCoupling)
@@ -114,7 +132,8 @@ Material readMaterial(const JsonPlace &place)
    if (!place.object())
       return material;
    place.known({"id", "name", "color", "density_kg_m3", "youngs_modulus_Pa", "poisson_ratio", "damping_ratio",
-                "role", "bonds", "cell_model", "poisson_coupling", "ports", "actuation"});
+                "role", "bonds", "dampings", "inertia_kg_m2", "cell_model", "poisson_coupling", "ports",
+                "actuation"});
    material.id = place.at("id").identifier();
    material.name = place.textOr("name", material.id);
    if (place.has("color"))
@@ -125,7 +144,11 @@ Material readMaterial(const JsonPlace &place)
    material.poissonRatio = place.numberOr("poisson_ratio", material.poissonRatio, -0.999, 0.4999);
    material.dampingRatio = place.numberOr("damping_ratio", 0, 0, 1000);
    if (place.has("bonds"))
-      material.bonds = readBonds(place.at("bonds"));
+      material.bonds = readConstants(place.at("bonds"), kStiffnesses);
+   if (place.has("dampings"))
+      material.dampings = readConstants(place.at("dampings"), kDampings);
+   if (place.has("inertia_kg_m2"))
+      material.inertia = readInertia(place.at("inertia_kg_m2"));
    if (place.has("cell_model"))
       material.cellModel = static_cast<CellModel>(place.at("cell_model").word({"bond", "block", "solid"}));
    material.poissonCoupling = place.booleanOr("poisson_coupling", false);

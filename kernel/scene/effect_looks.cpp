@@ -83,11 +83,11 @@ Verdict lookDamping(const Look &look)
 {
    if (auto still = withoutMotion(look))
       return *std::move(still);
-   const auto damped =
-       materialsWhere(look, [](const Material &material) { return material.dampingRatio > 0; });
+   const auto damped = materialsWhere(
+       look, [](const Material &material) { return material.dampingRatio > 0 || material.dampings; });
    if (damped.ids.empty())
-      return {false, "no material in use has a damping ratio", {}};
-   return {true, "materials with a damping ratio: " + damped.names(), damped.cells};
+      return {false, "no material in use has a damping ratio or dampings", {}};
+   return {true, "materials with a damping ratio or dampings: " + damped.names(), damped.cells};
 }
 
 Verdict lookOrientation(const Look &look)

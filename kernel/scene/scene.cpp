@@ -18,11 +18,22 @@ namespace {
 constexpr std::int64_t kGrain = 1 << 14;
 
 /// Columns of the property table in the order of propertiesOf(): what solvers ask for by name.
-constexpr std::array<const char *, 21> kProperties{
-    "density",   "youngs_modulus", "poisson_ratio",   "damping_ratio", "axial_x",   "axial_y",
-    "axial_z",   "shear_xy",       "shear_xz",        "shear_yx",      "shear_yz",  "shear_zx",
-    "shear_zy",  "bending_x",      "bending_y",       "bending_z",     "torsion_x", "torsion_y",
-    "torsion_z", "cell_model",     "poisson_coupling"};
+constexpr std::array<const char *, 39> kProperties{
+    "density",           "youngs_modulus",    "poisson_ratio",     "damping_ratio",     "axial_x",
+    "axial_y",           "axial_z",           "shear_xy",          "shear_xz",          "shear_yx",
+    "shear_yz",          "shear_zx",          "shear_zy",          "bending_x",         "bending_y",
+    "bending_z",         "torsion_x",         "torsion_y",         "torsion_z",         "cell_model",
+    "poisson_coupling",  "damping_axial_x",   "damping_axial_y",   "damping_axial_z",   "damping_shear_xy",
+    "damping_shear_xz",  "damping_shear_yx",  "damping_shear_yz",  "damping_shear_zx",  "damping_shear_zy",
+    "damping_bending_x", "damping_bending_y", "damping_bending_z", "damping_torsion_x", "damping_torsion_y",
+    "damping_torsion_z", "inertia_x",         "inertia_y",         "inertia_z"};
+
+std::array<double, 15> constantsOf(const BondConstants &k)
+{
+   return {k.axial[0],    k.axial[1],    k.axial[2],    k.shear[0][1], k.shear[0][2],
+           k.shear[1][0], k.shear[1][2], k.shear[2][0], k.shear[2][1], k.bending[0],
+           k.bending[1],  k.bending[2],  k.torsion[0],  k.torsion[1],  k.torsion[2]};
+}
 
 std::array<double, kProperties.size()> propertiesOf(const Material &material)
 {
@@ -32,14 +43,16 @@ std::array<double, kProperties.size()> propertiesOf(const Material &material)
    row[1] = material.youngsModulus;
    row[2] = material.poissonRatio;
    row[3] = material.dampingRatio;
-   if (material.bonds) {
-      const BondConstants &k = *material.bonds;
-      const std::array<double, 15> constants{k.axial[0],    k.axial[1],    k.axial[2],    k.shear[0][1],
-                                             k.shear[0][2], k.shear[1][0], k.shear[1][2], k.shear[2][0],
-                                             k.shear[2][1], k.bending[0],  k.bending[1],  k.bending[2],
-                                             k.torsion[0],  k.torsion[1],  k.torsion[2]};
-      std::copy(constants.begin(), constants.end(), row.begin() + 4);
-   }
+   const auto put = [&](const std::optional<BondConstants> &constants, std::ptrdiff_t first) {
+      if (!constants)
+         return;
+      const auto values = constantsOf(*constants);
+      std::copy(values.begin(), values.end(), row.begin() + first);
+   };
+   put(material.bonds, 4);
+   put(material.dampings, 21);
+   if (material.inertia)
+      std::copy(material.inertia->begin(), material.inertia->end(), row.begin() + 36);
    row[19] = static_cast<double>(material.cellModel);
    return row;
 }

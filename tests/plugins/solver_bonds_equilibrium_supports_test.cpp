@@ -9,6 +9,7 @@ class SolverBondsEquilibriumSupportsTest : public QObject
 private slots:
    void drivenCellsTurnAboutTiltedAxes();
    void drivenCellsFollowTheirCurves();
+   void fullyDrivenCellsArePlacedWhereverTheyAre();
    void actuatorsReachTheirFreeShape();
    void blocksSinkIntoTheGround();
    void looseParts_data();
@@ -68,6 +69,34 @@ void SolverBondsEquilibriumSupportsTest::drivenCellsFollowTheirCurves()
       QVERIFY(std::abs(run.read("position")[12] - (4 * l + 2e-3 * time)) < 1e-15);
       QVERIFY(std::abs(run.read("internal_force")[24] / force + 1) < 1e-9);
    }
+}
+
+/// Nothing is free: turns of 3 rad about axes that lead the two cells through half a turn of each other on
+/// the way are no way at all. In the end they are turned alike and stretched by 1 %: the force is k times
+/// that.
+void SolverBondsEquilibriumSupportsTest::fullyDrivenCellsArePlacedWhereverTheyAre()
+{
+   const double pitch = 0.01, stretch = 1e-4;
+   HandScene scene = bar(1, pitch, kRubber);
+   scene.channels.erase("fixed");
+   const double turn = 3, other = 2 * M_PI - turn; // the same turn about z, the other way round
+   const double place[2][3] = {
+       {0, 0, 0}, {(pitch + stretch) * std::cos(turn) - pitch, (pitch + stretch) * std::sin(turn), 0}};
+   for (int cell = 0; cell < 2; ++cell) {
+      for (int k = 0; k < 3; ++k)
+         drive(scene, cell, k, place[cell][k]);
+      drive(scene, cell, 5, cell == 0 ? turn : -other);
+   }
+   Run run(scene);
+   QVERIFY2(run.to(1) == DIATOM_OK, text(run).c_str());
+   QCOMPARE(run.result.state, DIATOM_CONVERGED);
+   const double force = 1e6 * pitch * stretch; // E A / l times the stretch
+   const auto internal = run.read("internal_force"), reaction = run.read("reaction");
+   // 1e-10 is rounding of places over a stretch of 1 %.
+   QVERIFY(std::abs(internal[0] / (force * std::cos(turn)) - 1) < 1e-10);
+   QVERIFY(std::abs(internal[1] / (force * std::sin(turn)) - 1) < 1e-10);
+   for (std::size_t k = 0; k < 12; ++k)
+      QCOMPARE(reaction[k], -internal[k]);
 }
 
 /// Constant voltage (a square wave that is always high, 0.5 V peak): the free shape follows from

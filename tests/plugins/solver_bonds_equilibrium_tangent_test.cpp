@@ -50,8 +50,8 @@ Sample sample(Random &random, double angle)
       s.k.k[i] = 2 + random.number();
       s.k.c[i] = 1 + 0.5 * random.number();
    }
-   s.k.s[0] = 0.2 * random.number();
-   s.k.s[1] = 0.2 * random.number();
+   s.k.s[0] = s.k.turn[0] = 0.2 * random.number();
+   s.k.s[1] = s.k.turn[1] = 0.2 * random.number();
    s.stretch = random.vector(0.1);
    s.turn = random.vector(0.3);
    return s;

@@ -85,6 +85,8 @@ private slots:
    void forcesAreTheGradientOfTheEnergy();
    void workAroundAClosedLoopVanishes();
    void steppedBeamIsExactForUnlikeHalves();
+   void aSteppedBondThatOnlyBendsKeepsItsLength();
+   void givenDampingsInProportionToStiffnessesStaySo();
    void torsionConstantOfASquareIsSaintVenants();
 };
 
@@ -196,8 +198,8 @@ void SolverBondsKernelTest::forcesAreTheGradientOfTheEnergy()
    const double stiffness[3] = {1, 0.3, 0.5}, turning[3] = {0.08, 0.02, 0.15};
    std::copy_n(stiffness, 3, k.k);
    std::copy_n(turning, 3, k.c);
-   k.s[0] = 0.2;
-   k.s[1] = -0.1;
+   k.s[0] = k.turn[0] = 0.2; // of a bond as long as 1
+   k.s[1] = k.turn[1] = -0.1;
    for (int trial = 0; trial < 200; ++trial) {
       const Quat qa = exponential(2.0 * any());
       const Quat qb = qa * exponential(1.5 * any());
@@ -289,6 +291,63 @@ void SolverBondsKernelTest::steppedBeamIsExactForUnlikeHalves()
       QVERIFY(std::abs(bondUm / um - 1) < 1e-12);
       QVERIFY(std::abs(bondTm / tm - 1) < 1e-12);
    }
+}
+
+/// The halves of a stepped bond are arcs, one of them almost straight: a moment turns the ends against each
+/// other and pulls them together by a twelfth of the square of the turn at most, never apart. The law has
+/// none of that, to rounding, for turns up to 2 rad: without force the ends are as far apart as at rest.
+/// Where they then are is the exact beam's place to second order: the softer half's chord, with all the turn
+/// in that half, points where half the turn says.
+void SolverBondsKernelTest::aSteppedBondThatOnlyBendsKeepsItsLength()
+{
+   const double l = 1e-3;
+   const HalfBond stiff = fromModulus(1e9, 0.3, l, l, l), soft = fromModulus(1e5, 0.3, l, l, l);
+   const BondConstants k = compose(stiff, soft, l, Beam::timoshenko, true, 1, kNoInertia);
+   for (const double turn : {0.01, 0.1, 0.5, 2.0}) {
+      // Without force the separation lies along the stepped bond's own frame.
+      Ends ends;
+      ends.qb = exponential({0, 0, turn});
+      const Relation r = relate(ends);
+      const Vec3 along = Step(k, r.phi).back({l, 0, 0});
+      ends.separation = r.middle * along;
+      BondForces f;
+      evaluate<false, true, true>(ends, k, {l, 0, 0}, {}, f);
+      const double size = k.c[2] * turn / l;
+      QVERIFY(norm(f.force) < 1e-12 * (size + k.k[0] * l));
+      QVERIFY(std::abs(norm(ends.separation) / l - 1) < 1e-15);
+      QVERIFY(std::abs(f.torqueA.z - k.c[2] * turn) < 1e-12 * k.c[2] * turn + 1e-12 * k.k[0] * l * l);
+      // All the turn in the softer half: the first half is straight, the second's chord is turned by half of
+      // it.
+      const double direction = std::atan2(0.5 * std::sin(turn / 2), 0.5 + 0.5 * std::cos(turn / 2));
+      QVERIFY(std::abs(std::atan2(ends.separation.y, ends.separation.x) - direction) <
+              0.02 * turn * turn * turn + 1e-4 * turn);
+   }
+}
+
+/// Dampings that are 0.01 s times the stiffnesses of either half are so for the bond, whatever the beam
+/// theory and the step: to rounding.
+void SolverBondsKernelTest::givenDampingsInProportionToStiffnessesStaySo()
+{
+   const double l = 1e-3, beta = 0.01;
+   for (const Beam beam : kBeams)
+      for (const bool stepped : {false, true}) {
+         HalfBond a = fromModulus(1e6, 0.3, l, l, l), b = fromModulus(3e7, 0.1, l, l, l);
+         for (HalfBond *half : {&a, &b}) {
+            half->ownDamping = true;
+            half->damping = *half;
+            half->damping.axial *= beta;
+            half->damping.torsion *= beta;
+            for (int i = 0; i < 2; ++i) {
+               half->damping.shear[i] *= beta;
+               half->damping.bending[i] *= beta;
+            }
+         }
+         const BondConstants k = compose(a, b, l, beam, stepped, 1, kNoInertia);
+         for (int i = 0; i < 3; ++i) {
+            QVERIFY(std::abs(k.d[i] / (beta * k.k[i]) - 1) < 1e-12);
+            QVERIFY(std::abs(k.e[i] / (beta * k.c[i]) - 1) < 1e-12);
+         }
+      }
 }
 
 /// Timoshenko and Goodier, table in article 109: 0.1406 a^4 for a square, 0.229 a b^3 for 2:1 (to the digits

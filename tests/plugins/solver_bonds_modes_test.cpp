@@ -34,6 +34,7 @@ class SolverBondsModesTest : public QObject
 private slots:
    void cantileversVibrateAsTheReference();
    void freeBlocksHaveSixRigidModesAndThenTheReferences();
+   void highestFrequenciesAreTheReferences();
    void loadedColumnsLoseTheirStiffnessAtTheCriticalLoad();
    void shapesHaveUnitModalMassAndDoNotMix();
    void largeBlocksGiveTheSameBitsOnAnyThreads();
@@ -97,6 +98,33 @@ void SolverBondsModesTest::freeBlocksHaveSixRigidModesAndThenTheReferences()
       for (std::size_t i = 0; i < 10; ++i)
          QVERIFY2(std::abs(std::sqrt(got[6 + i]) / omega[i].get<double>() - 1) < 1e-6,
                   qPrintable(QString("%1 mode %2: %3").arg(beam.c_str()).arg(i).arg(std::sqrt(got[6 + i]))));
+   }
+}
+
+/// c04 "omega_max_rad_s" of chains and of a free block, "eigen_rel" 1e-6.
+void SolverBondsModesTest::highestFrequenciesAreTheReferences()
+{
+   DIATOM_NEEDS_SHARED();
+   const auto check = [](HandScene &scene, const std::string &beam, double expected) {
+      Run run(scene, {.beam = beam, .modes = 3, .modesFrom = "highest"});
+      QVERIFY2(run.to(0) == DIATOM_OK, run.host.said.c_str());
+      const auto eigenvalues = run.read("eigenvalue");
+      QCOMPARE(eigenvalues.size(), std::size_t{3});
+      QVERIFY(std::is_sorted(eigenvalues.begin(), eigenvalues.end()));
+      const double error = std::sqrt(eigenvalues[2]) / expected - 1;
+      QVERIFY2(std::abs(error) < 1e-6, qPrintable(QString::number(error)));
+   };
+   const json chains = readReference("c04-cantilever-modes.json");
+   for (const json &s : chains.at("scenarios"))
+      for (const auto &[model, beam] : kModels) {
+         HandScene scene = sceneOf(chains, s.at("cells")[0].at("box")[1][0].get<int>() + 1, 1, 1);
+         scene.fix(0);
+         check(scene, beam, s.at("expected").at(model).at("omega_max_rad_s"));
+      }
+   const json block = readReference("c04-free-block.json");
+   for (const auto &[model, beam] : kModels) {
+      HandScene scene = sceneOf(block, 4, 4, 4);
+      check(scene, beam, block.at("expected").at(model).at("omega_max_rad_s"));
    }
 }
 

@@ -197,6 +197,7 @@ struct SolverChoice
    double reproducible = 0;
    std::string instructions = "best";
    double numericalDamping = 0.2, stepTolerance = 1e-3;
+   std::string junction = "stepped", modesFrom = "lowest";
 };
 
 /// A running solver.
@@ -222,7 +223,9 @@ public:
                            {"reproducible", choice.reproducible, ""},
                            {"instructions", 0, choice.instructions.c_str()},
                            {"numerical_damping", choice.numericalDamping, ""},
-                           {"step_tolerance", choice.stepTolerance, ""}};
+                           {"step_tolerance", choice.stepTolerance, ""},
+                           {"junction", 0, choice.junction.c_str()},
+                           {"modes_from", 0, choice.modesFrom.c_str()}};
       std::vector<const char *> names, texts;
       std::vector<double> numbers;
       for (const Value &one : all) {

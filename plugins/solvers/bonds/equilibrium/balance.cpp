@@ -265,8 +265,7 @@ double Balance::elasticEnergy(const State &state, const RestShape &rest) const
       const BondConstants &k = m_assembly.constants[i];
       const BondPoint r = bondGeometry(bondEnds<false>(m_assembly, state, i, m_assembly.frameOf(i)));
       const Vec3 phi = r.phi - turnOf(rest, i);
-      Vec3 d = r.stretch - stretchOf(m_assembly, rest, i);
-      detail::couple(k, phi, d);
+      const Vec3 d = ownStrain(r, k, phi, r.stretch - stretchOf(m_assembly, rest, i));
       sum += 0.5 * (dot(scaled(k.k, d), d) + dot(scaled(k.c, phi), phi));
    }
    for (const auto &coupling : m_couplings)

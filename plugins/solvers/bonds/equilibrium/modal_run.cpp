@@ -35,6 +35,7 @@ void ModalRun::estimate(const Options &options, const sdk::SceneView &scene, dia
 
 ModalRun::ModalRun(const Options &options, const sdk::Values &values, const sdk::SceneView &scene)
     : m_static(options, values, scene), m_wanted(wantedOf(values, m_static.balance())),
+      m_highest(values.text("modes_from") == "highest"),
       m_readout(m_static.balance(),
                 {{"eigenvalue", "rad2/s2", m_wanted, 1}, {"mode", "", m_wanted * scene.cells(), 6}})
 {}
@@ -64,7 +65,8 @@ std::int32_t ModalRun::step(const sdk::Call &call, const diatom_step_request &re
    const std::int32_t status = findBalance(call, request, result);
    if (status != DIATOM_OK || result.state != DIATOM_CONVERGED)
       return status;
-   m_modes = lowestModes(call, m_static.balance(), m_static.state(), m_static.statics().loading(), m_wanted);
+   m_modes = (m_highest ? highestModes : lowestModes)(call, m_static.balance(), m_static.state(),
+                                                      m_static.statics().loading(), m_wanted);
    if (m_modes.cancelled)
       return DIATOM_CANCELLED;
    if (!m_modes.complete)

@@ -1,4 +1,4 @@
-// The analysis "modes": the balance at a time, then the lowest vibrations about it.
+// The analysis "modes": the balance at a time, then the lowest or the highest vibrations about it.
 #pragma once
 
 #include "equilibrium/modes.h"
@@ -27,6 +27,7 @@ private:
 
    StaticRun m_static;
    std::int64_t m_wanted;
+   bool m_highest;
    ModeShapes m_modes;
    Readout m_readout;
 };

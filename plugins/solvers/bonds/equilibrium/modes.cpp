@@ -1,7 +1,9 @@
 #include "equilibrium/modes.h"
 
+#include "equilibrium/ritz.h"
+
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 
 #include <limits>
 
@@ -9,11 +11,9 @@ namespace bonds {
 
 namespace {
 
-/// Repeated frequencies up to this often are sure to be found; a cube has fivefold ones.
-constexpr std::size_t kStarts = 6;
-/// Change of a Ritz vector by the operator beyond its subspace, relative to its eigenvalue; that of the
-/// eigenvalue is its square.
-constexpr double kSharp = 1e-9;
+/// Of the inverse's and of the stiffness' vectors: the highest eigenvalues lie close together, and half this
+/// is the most that their frequencies can be wrong by.
+constexpr double kSharp = 1e-9, kSharpHighest = 1e-6;
 constexpr std::size_t kMostVectors = 600;
 /// Part of the largest eigenvalue that the shift starts at: small against most first modes, large against
 /// rounding.
@@ -21,8 +21,63 @@ constexpr double kShift = 1e-9;
 /// An eigenvalue this small a part of the largest cannot be told from none.
 constexpr double kNone = 64 * std::numeric_limits<double>::epsilon();
 
-/// B = L^T (K - shift M)^-1 L with M = L L^T, on free degrees of freedom.
-class Inverted
+/// A mass matrix M = L L^T of blocks on the diagonal.
+struct MassRoot
+{
+   explicit MassRoot(const std::vector<Block> &mass);
+   /// L^-T y
+   Vector shapeOf(const Vector &y) const;
+
+   std::vector<Block> root, inverse; // L^T, L^-T
+};
+
+MassRoot::MassRoot(const std::vector<Block> &mass) : root(mass.size()), inverse(mass.size())
+{
+   for (std::size_t i = 0; i < mass.size(); ++i) {
+      const Eigen::LLT<Block> llt(mass[i]);
+      root[i] = llt.matrixU();
+      inverse[i] = root[i].inverse();
+   }
+}
+
+Vector MassRoot::shapeOf(const Vector &y) const
+{
+   Vector out(y.size());
+   for (std::size_t i = 0; i < root.size(); ++i)
+      out.segment<6>(6 * i).noalias() = inverse[i] * y.segment<6>(6 * i);
+   return out;
+}
+
+/// L^-1 K L^-T on free degrees of freedom.
+class Direct : public SymmetricOperator
+{
+public:
+   Direct(const sdk::Call &call, const Balance &balance, const State &state, const Loading &loading)
+       : m_free(balance.supports().free()), m_root(massBlocks(balance, state)), m_stiffness(balance.pattern())
+   {
+      balance.stiffness(call, state, loading, 0, m_stiffness);
+   }
+
+   bool apply(const sdk::Call &call, const Vector &y, Vector &out) const override
+   {
+      m_stiffness.multiply(call, shapeOf(y), out);
+      out.array() *= m_free.array();
+      for (std::size_t i = 0; i < m_root.inverse.size(); ++i)
+         out.segment<6>(6 * i) = (m_root.inverse[i].transpose() * out.segment<6>(6 * i)).eval();
+      out.array() *= m_free.array();
+      return true;
+   }
+   Vector shapeOf(const Vector &y) const { return m_root.shapeOf(y).cwiseProduct(m_free); }
+   const Vector &free() const override { return m_free; }
+
+private:
+   Vector m_free;
+   MassRoot m_root;
+   BlockMatrix m_stiffness;
+};
+
+/// B = L^T (K - shift M)^-1 L on free degrees of freedom.
+class Inverted : public SymmetricOperator
 {
 public:
    Inverted(const sdk::Call &call, const Balance &balance, const State &state, const Loading &loading);
@@ -30,17 +85,18 @@ public:
    /// Lowers the shift until no eigenvalue lies below it; false when none is found.
    bool shiftBelowAll(const sdk::Call &call);
    /// False where an eigenvalue turns out to lie below the shift.
-   bool apply(const sdk::Call &call, const Vector &y, Vector &out) const;
-   Vector shapeOf(const Vector &y) const; // L^-T y
+   bool apply(const sdk::Call &call, const Vector &y, Vector &out) const override;
+   Vector shapeOf(const Vector &y) const { return m_root.shapeOf(y).cwiseProduct(m_free); }
    double shift() const { return m_shift; }
    double largest() const { return m_largest; }
-   const Vector &free() const { return m_free; }
+   const Vector &free() const override { return m_free; }
 
 private:
    bool factor(const sdk::Call &call);
 
    Vector m_free;
-   std::vector<Block> m_mass, m_root, m_inverseRoot; // M, L^T, L^-T
+   std::vector<Block> m_mass;
+   MassRoot m_root;
    BlockMatrix m_stiffness, m_shifted;
    Places m_places;
    std::unique_ptr<Inverse> m_inverse;
@@ -48,21 +104,15 @@ private:
 };
 
 Inverted::Inverted(const sdk::Call &call, const Balance &balance, const State &state, const Loading &loading)
-    : m_free(balance.supports().free()), m_mass(massBlocks(balance, state)), m_root(m_mass.size()),
-      m_inverseRoot(m_mass.size()), m_stiffness(balance.pattern()), m_shifted(m_stiffness),
-      m_places(placesOf(balance.assembly(), state)),
+    : m_free(balance.supports().free()), m_mass(massBlocks(balance, state)), m_root(m_mass),
+      m_stiffness(balance.pattern()), m_shifted(m_stiffness), m_places(placesOf(balance.assembly(), state)),
       m_inverse(makeInverse(m_stiffness, m_free, placesOf(balance.assembly(), State(state.n))))
 {
    balance.stiffness(call, state, loading, 0, m_stiffness);
-   for (std::size_t i = 0; i < m_mass.size(); ++i) {
-      const Eigen::LLT<Block> llt(m_mass[i]);
-      m_root[i] = llt.matrixU();
-      m_inverseRoot[i] = m_root[i].inverse();
-   }
    for (std::int64_t i = 0; i < state.n; ++i) {
       Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
       for (std::int64_t e = m_stiffness.begin(i); e < m_stiffness.end(i); ++e)
-         sum += (m_inverseRoot[i].transpose() * m_stiffness[e] * m_inverseRoot[m_stiffness.column(e)])
+         sum += (m_root.inverse[i].transpose() * m_stiffness[e] * m_root.inverse[m_stiffness.column(e)])
                     .cwiseAbs()
                     .rowwise()
                     .sum();
@@ -93,140 +143,33 @@ bool Inverted::shiftBelowAll(const sdk::Call &call)
 bool Inverted::apply(const sdk::Call &call, const Vector &y, Vector &out) const
 {
    Vector right(y.size());
-   for (std::size_t i = 0; i < m_root.size(); ++i)
-      right.segment<6>(6 * i).noalias() = m_root[i].transpose() * y.segment<6>(6 * i);
+   for (std::size_t i = 0; i < m_root.root.size(); ++i)
+      right.segment<6>(6 * i).noalias() = m_root.root[i].transpose() * y.segment<6>(6 * i);
    right.array() *= m_free.array();
    bool below = false;
    if (m_inverse->exact())
       m_inverse->apply(call, right, out);
    else
       below = conjugateGradients(call, m_shifted, m_free, *m_inverse, right, 1e-12, 2000, out).indefinite;
-   for (std::size_t i = 0; i < m_root.size(); ++i)
-      out.segment<6>(6 * i) = (m_root[i] * out.segment<6>(6 * i)).eval();
+   for (std::size_t i = 0; i < m_root.root.size(); ++i)
+      out.segment<6>(6 * i) = (m_root.root[i] * out.segment<6>(6 * i)).eval();
    out.array() *= m_free.array();
    return !below;
 }
 
-Vector Inverted::shapeOf(const Vector &y) const
-{
-   Vector out(y.size());
-   for (std::size_t i = 0; i < m_root.size(); ++i)
-      out.segment<6>(6 * i).noalias() = m_inverseRoot[i] * y.segment<6>(6 * i);
-   return out.cwiseProduct(m_free);
-}
-
-/// Orthonormal vectors, and the operator seen by them.
-class Krylov
-{
-public:
-   Krylov(const Inverted &inverted, std::size_t size) : m_inverted(&inverted), m_size(size) {}
-
-   /// Takes the operator to one more vector; false where the shift is not below all eigenvalues.
-   bool grow(const sdk::Call &call);
-   bool full() const { return m_done >= m_size; }
-   std::size_t done() const { return m_done; }
-   /// Ritz values, descending, and their vectors in the subspace; returns how many of the first are sharp.
-   std::size_t sharp(Eigen::VectorXd &values, Eigen::MatrixXd &vectors) const;
-   Vector combine(const Eigen::VectorXd &part) const;
-
-private:
-   bool append(Vector w, double scale, Column *coefficients);
-   void appendRandom();
-
-   const Inverted *m_inverted;
-   std::size_t m_size; // of the whole space
-   std::vector<Vector> m_basis;
-   std::vector<Column> m_column; // of the operator, for each vector that is done
-   std::size_t m_done = 0;
-   unsigned m_random = 1;
-};
-
-/// Makes w orthogonal to the basis, twice (once loses digits), and adds it unless nothing is left of it.
-bool Krylov::append(Vector w, double scale, Column *coefficients)
-{
-   Column h(m_basis.size(), 0);
-   for (int pass = 0; pass < 2; ++pass)
-      for (std::size_t i = 0; i < m_basis.size(); ++i) {
-         const double part = w.dot(m_basis[i]);
-         h[i] += part;
-         w -= part * m_basis[i];
-      }
-   const double left = w.norm();
-   const bool more = m_basis.size() < m_size && left > 1e-12 * scale;
-   if (more) {
-      m_basis.push_back(w / left);
-      h.push_back(left);
-   }
-   if (coefficients)
-      *coefficients = std::move(h);
-   return more;
-}
-
-void Krylov::appendRandom()
-{
-   Vector w(m_inverted->free().size());
-   for (double &x : w) {
-      m_random = m_random * 1664525 + 1013904223; // Numerical Recipes' generator: the same on all machines
-      x = static_cast<double>(m_random >> 8) / (1 << 24) - 0.5;
-   }
-   w.array() *= m_inverted->free().array();
-   const double scale = w.norm();
-   append(std::move(w), scale, nullptr);
-}
-
-bool Krylov::grow(const sdk::Call &call)
-{
-   while (m_basis.size() < std::min(kStarts, m_size) || m_basis.size() == m_done)
-      appendRandom();
-   Vector w;
-   if (!m_inverted->apply(call, m_basis[m_done], w))
-      return false;
-   Column coefficients;
-   const double scale = w.norm();
-   append(std::move(w), scale, &coefficients);
-   m_column.push_back(std::move(coefficients));
-   ++m_done;
-   return true;
-}
-
-std::size_t Krylov::sharp(Eigen::VectorXd &values, Eigen::MatrixXd &vectors) const
-{
-   const auto n = static_cast<Eigen::Index>(m_done), all = static_cast<Eigen::Index>(m_basis.size());
-   Eigen::MatrixXd h = Eigen::MatrixXd::Zero(all, n);
-   for (Eigen::Index j = 0; j < n; ++j)
-      for (std::size_t i = 0; i < m_column[j].size(); ++i)
-         h(static_cast<Eigen::Index>(i), j) = m_column[j][i];
-   const Eigen::MatrixXd square = h.topRows(n);
-   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (square + square.transpose()));
-   values = solver.eigenvalues().reverse();
-   vectors = solver.eigenvectors().rowwise().reverse();
-   const Eigen::MatrixXd beyond = h.bottomRows(all - n) * vectors;
-   std::size_t count = 0;
-   while (count < m_done && beyond.col(static_cast<Eigen::Index>(count)).norm() <=
-                                kSharp * std::abs(values[static_cast<Eigen::Index>(count)]))
-      ++count;
-   return count;
-}
-
-Vector Krylov::combine(const Eigen::VectorXd &part) const
-{
-   Vector out = Vector::Zero(m_basis.front().size());
-   for (Eigen::Index i = 0; i < part.size(); ++i)
-      out += part[i] * m_basis[i];
-   return out;
-}
-
-ModeShapes shapesOf(const Inverted &inverted, const Krylov &krylov, std::size_t wanted)
+/// The first Ritz vectors as shapes; `eigenvalueOf` takes a Ritz value to what it stands for.
+template<typename Operator, typename Eigenvalue>
+ModeShapes shapesOf(const Operator &from, const RitzSpace &space, std::size_t wanted,
+                    const Eigenvalue &eigenvalueOf)
 {
    ModeShapes out;
    Eigen::VectorXd values;
    Eigen::MatrixXd vectors;
-   out.complete = krylov.sharp(values, vectors) >= wanted || krylov.full();
+   out.complete = space.sharp(values, vectors) >= wanted || space.full();
    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(values.size(), static_cast<Eigen::Index>(wanted)); ++k)
    {
-      const double value = 1 / values[k] + inverted.shift();
-      out.eigenvalue.push_back(std::abs(value) < kNone * inverted.largest() ? 0 : value);
-      Vector shape = inverted.shapeOf(krylov.combine(vectors.col(k)));
+      out.eigenvalue.push_back(eigenvalueOf(values[k]));
+      Vector shape = from.shapeOf(space.combine(vectors.col(k)));
       Eigen::Index largest = 0;
       shape.cwiseAbs().maxCoeff(&largest);
       if (shape[largest] < 0) // a sign must be chosen
@@ -234,6 +177,27 @@ ModeShapes shapesOf(const Inverted &inverted, const Krylov &krylov, std::size_t 
       out.shape.push_back(std::move(shape));
    }
    return out;
+}
+
+/// Grows the space until so many are sharp; false where the operator fails.
+bool growUntilSharp(const sdk::Call &call, RitzSpace &space, std::size_t wanted)
+{
+   Eigen::VectorXd values;
+   Eigen::MatrixXd vectors;
+   std::size_t look = wanted + RitzSpace::kStarts;
+   while (!call.cancelled() && !space.full() && space.done() < kMostVectors) {
+      if (!space.grow(call))
+         return false;
+      if (space.done() >= look) {
+         if (space.sharp(values, vectors) >= wanted + 1)
+            break; // one more than asked for: none before has been overlooked
+         // A look costs the cube of what is there; looked at ever later, all of them cost little.
+         look = space.done() + std::max(RitzSpace::kStarts, space.done() / 8);
+      }
+      call.progress(std::min(1.0, static_cast<double>(space.done()) / static_cast<double>(8 * wanted)),
+                    "seeking modes");
+   }
+   return true;
 }
 
 } // namespace
@@ -267,22 +231,33 @@ ModeShapes lowestModes(const sdk::Call &call, const Balance &balance, const Stat
    const std::size_t modes = std::min(static_cast<std::size_t>(wanted), size);
    ModeShapes out;
    while (modes > 0 && inverted.shiftBelowAll(call)) {
-      Krylov krylov(inverted, size);
-      bool below = false;
-      Eigen::VectorXd values;
-      Eigen::MatrixXd vectors;
-      while (!below && !call.cancelled() && !krylov.full() && krylov.done() < kMostVectors) {
-         below = !krylov.grow(call);
-         if (krylov.done() % kStarts == 0 && krylov.done() >= modes + kStarts &&
-             krylov.sharp(values, vectors) >= modes + 1)
-            break; // one more than asked for: none below has been overlooked
-         call.progress(std::min(1.0, static_cast<double>(krylov.done()) / static_cast<double>(8 * modes)),
-                       "seeking modes");
-      }
-      if (!below && krylov.done() > 0) {
-         out = shapesOf(inverted, krylov, modes);
+      RitzSpace space(inverted, size, kSharp);
+      if (growUntilSharp(call, space, modes) && space.done() > 0) {
+         out = shapesOf(inverted, space, modes, [&](double ritz) {
+            const double value = 1 / ritz + inverted.shift();
+            return std::abs(value) < kNone * inverted.largest() ? 0 : value;
+         });
          break;
       }
+   }
+   out.complete = out.complete && out.eigenvalue.size() == modes;
+   out.cancelled = call.cancelled();
+   return out;
+}
+
+ModeShapes highestModes(const sdk::Call &call, const Balance &balance, const State &state,
+                        const Loading &loading, std::int64_t wanted)
+{
+   const Direct direct(call, balance, state, loading);
+   const auto size = static_cast<std::size_t>(direct.free().sum());
+   const std::size_t modes = std::min(static_cast<std::size_t>(wanted), size);
+   ModeShapes out;
+   if (modes > 0) {
+      RitzSpace space(direct, size, kSharpHighest);
+      growUntilSharp(call, space, modes);
+      out = shapesOf(direct, space, modes, [](double ritz) { return ritz; });
+      std::reverse(out.eigenvalue.begin(), out.eigenvalue.end());
+      std::reverse(out.shape.begin(), out.shape.end());
    }
    out.complete = out.complete && out.eigenvalue.size() == modes;
    out.cancelled = call.cancelled();

@@ -69,9 +69,25 @@ NewtonResult Statics::tryLoading(const sdk::Call &call, const Loading &next, dou
    return m_newton.solve(call, *this, trial, std::move(move), tolerance);
 }
 
+/// Where nothing is free the drives alone say where all is, whatever way leads there.
+StaticsResult Statics::place(const sdk::Call &call, const Loading &target, State &state)
+{
+   const State from = state;
+   if (const Vector move = stillToMove(target); move.size() > 0)
+      advance(from, move, 1, state);
+   StaticsResult out;
+   out.residual = measureAt(call, target, state).relative();
+   out.balanced = true;
+   out.reached = 1;
+   out.negative = 0;
+   return out;
+}
+
 StaticsResult Statics::solve(const sdk::Call &call, const Loading &target, const StaticsOptions &options,
                              State &state)
 {
+   if (m_balance->supports().free().isZero(0))
+      return place(call, target, state);
    StaticsResult out;
    const Loading start = m_loading;
    double longest = options.steps > 0 ? 1.0 / options.steps : 1, step = longest;

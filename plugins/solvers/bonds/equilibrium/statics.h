@@ -41,6 +41,7 @@ public:
 
 private:
    Vector stillToMove(const Loading &next) const;
+   StaticsResult place(const sdk::Call &call, const Loading &target, State &state);
    NewtonResult tryLoading(const sdk::Call &call, const Loading &next, double tolerance, State &trial);
 
    const Balance *m_balance;

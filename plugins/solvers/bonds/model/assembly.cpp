@@ -35,6 +35,7 @@ Options Options::from(const sdk::Values &values)
                     : instructions == "scalar" ? Instructions::scalar
                                                : Instructions::best;
    o.reproducible = values.number("reproducible") != 0;
+   o.stepped = values.text("junction") != "mean";
    o.exact = gradient != "simple";
    o.safety = values.number("safety");
    if (!(o.safety > 0 && o.safety <= 1))
@@ -94,6 +95,7 @@ void Assembly::readEffects(const sdk::SceneView &scene)
 
 void Assembly::readCells(const sdk::SceneView &scene)
 {
+   constexpr const char *names[] = {"inertia_x", "inertia_y", "inertia_z"};
    const auto n = static_cast<std::size_t>(cells);
    for (int k = 0; k < 3; ++k) {
       rest[k].resize(n);
@@ -122,8 +124,16 @@ void Assembly::readCells(const sdk::SceneView &scene)
          rest[k][i] = p[k];
          const double u = e[(k + 1) % 3], v = e[(k + 2) % 3];
          boxInertia[k][i] = m / 12 * (u * u + v * v);
+         const double own = scene.property(scene.material(i), names[k]);
+         if (own <= 0 || std::isinf(own))
+            throw Failure(DIATOM_BAD_INPUT,
+                          "the cell " + scene.name(i) + " has no inertia: give its material one above 0");
+         if (!std::isnan(own))
+            boxInertia[k][i] = own;
       }
-      boxes = boxes || std::abs(e[0] - e[1]) > 1e-9 * e[0] || std::abs(e[0] - e[2]) > 1e-9 * e[0];
+      const double one = boxInertia[0][i];
+      boxes = boxes || std::abs(one - boxInertia[1][i]) > 1e-9 * one ||
+              std::abs(one - boxInertia[2][i]) > 1e-9 * one;
       const Vec3 down = matrix(orientation[i]).r2;
       halfHeight[i] = 0.5 * (std::abs(down.x) * e[0] + std::abs(down.y) * e[1] + std::abs(down.z) * e[2]);
    }

@@ -22,6 +22,7 @@ struct Options
    enum class Integrator { semiImplicit, verlet, rungeKutta, implicit };
    Integrator integrator = Integrator::semiImplicit;
    Beam beam = Beam::timoshenko;
+   bool stepped = true; // bonds between unlike cells are stepped beams
    bool exact = true;
    enum class Precision { f64, f32 };
    Precision precision = Precision::f64;

@@ -12,36 +12,53 @@ using sdk::Failure;
 
 namespace {
 
-/// Stiffness data of one material; explicit constants replace what follows from E and nu.
-struct Stiffness
+/// Fifteen constants in a cell's own axes; not a number = derive.
+struct GivenConstants
 {
-   double youngsModulus = 0, poissonRatio = 0, dampingRatio = 0;
-   double axial[3], shear[3][3], bending[3], torsion[3]; // not a number = derive
-   bool explicitConstants = false;
-   CellModel model = CellModel::bond;
+   double axial[3], shear[3][3], bending[3], torsion[3];
+
+   /// Reads them under names that begin with `prefix`; whether any is there.
+   bool read(const sdk::SceneView &scene, std::int32_t material, const std::string &prefix);
 };
 
-Stiffness readStiffness(const sdk::SceneView &scene, std::int32_t material)
+bool GivenConstants::read(const sdk::SceneView &scene, std::int32_t material, const std::string &prefix)
 {
    const std::string axes = "xyz";
-   Stiffness s;
+   bool any = false;
    const auto get = [&](const std::string &name) {
-      const double value = scene.property(material, name);
+      const double value = scene.property(material, prefix + name);
       if (!std::isnan(value)) {
-         s.explicitConstants = true;
+         any = true;
          if (!(value >= 0) || std::isinf(value))
-            throw Failure(DIATOM_BAD_INPUT, "the constant " + name + " of material " +
+            throw Failure(DIATOM_BAD_INPUT, "the constant " + prefix + name + " of material " +
                                                 std::to_string(material) + " must not be negative");
       }
       return value;
    };
    for (std::size_t i = 0; i < 3; ++i) {
-      s.axial[i] = get(std::string("axial_") + axes[i]);
-      s.bending[i] = get(std::string("bending_") + axes[i]);
-      s.torsion[i] = get(std::string("torsion_") + axes[i]);
+      axial[i] = get(std::string("axial_") + axes[i]);
+      bending[i] = get(std::string("bending_") + axes[i]);
+      torsion[i] = get(std::string("torsion_") + axes[i]);
       for (std::size_t j = 0; j < 3; ++j)
-         s.shear[i][j] = i == j ? std::nan("") : get(std::string("shear_") + axes[i] + axes[j]);
+         shear[i][j] = i == j ? std::nan("") : get(std::string("shear_") + axes[i] + axes[j]);
    }
+   return any;
+}
+
+/// Stiffness data of one material; explicit constants replace what follows from E and nu.
+struct Stiffness
+{
+   double youngsModulus = 0, poissonRatio = 0, dampingRatio = 0;
+   GivenConstants given, damping;
+   bool explicitConstants = false, ownDamping = false;
+   CellModel model = CellModel::bond;
+};
+
+Stiffness readStiffness(const sdk::SceneView &scene, std::int32_t material)
+{
+   Stiffness s;
+   s.explicitConstants = s.given.read(scene, material, "");
+   s.ownDamping = s.damping.read(scene, material, "damping_");
    s.youngsModulus = scene.property(material, "youngs_modulus");
    s.poissonRatio = scene.property(material, "poisson_ratio");
    const double zeta = scene.property(material, "damping_ratio");
@@ -75,6 +92,17 @@ void replace(double &value, double constant)
       value = constant;
 }
 
+/// Own constants of a cell whose axes n, y and z lie along those of the bond.
+void replace(HalfConstants &half, const GivenConstants &given, int n, int y, int z)
+{
+   replace(half.axial, given.axial[n]);
+   replace(half.torsion, given.torsion[n]);
+   replace(half.shear[0], given.shear[n][y]);
+   replace(half.shear[1], given.shear[n][z]);
+   replace(half.bending[0], given.bending[y]);
+   replace(half.bending[1], given.bending[z]);
+}
+
 /// The half of a bond that lies in `cell`. Constants permute for the turns of a cube; cells and bonds that
 /// lie askew have constants only through E and nu, with a square section as wide as the geometric mean of the
 /// cell's edges.
@@ -85,7 +113,7 @@ HalfBond halfOf(const sdk::SceneView &scene, const Stiffness &s, std::int64_t ce
    const Mat3 own = matrix({q[0], q[1], q[2], q[3]});
    const int n = ownAxis(own, frame.r0), y = ownAxis(own, frame.r1), z = ownAxis(own, frame.r2);
    const bool aligned = n >= 0 && y >= 0 && z >= 0;
-   if (s.explicitConstants && !aligned)
+   if ((s.explicitConstants || s.ownDamping) && !aligned)
       throw Failure(DIATOM_UNSUPPORTED,
                     "the cell " + scene.name(cell) +
                         " has bond constants of its own but lies askew to its bonds: give its "
@@ -99,14 +127,11 @@ HalfBond halfOf(const sdk::SceneView &scene, const Stiffness &s, std::int64_t ce
       throw Failure(DIATOM_BAD_INPUT, "the material of cell " + scene.name(cell) +
                                           " has neither a Young's modulus nor bond constants");
    half.dampingRatio = s.dampingRatio;
-   if (s.explicitConstants) {
-      replace(half.axial, s.axial[n]);
-      replace(half.torsion, s.torsion[n]);
-      replace(half.shear[0], s.shear[n][y]);
-      replace(half.shear[1], s.shear[n][z]);
-      replace(half.bending[0], s.bending[y]);
-      replace(half.bending[1], s.bending[z]);
-   }
+   if (s.explicitConstants)
+      replace(half, s.given, n, y, z);
+   half.ownDamping = s.ownDamping;
+   if (s.ownDamping)
+      replace(half.damping, s.damping, n, y, z);
    return half;
 }
 
@@ -218,8 +243,8 @@ BondConstants Compiler::constantsOf(std::int64_t bond, bool &damped) const
          twistAsPlate(hb, plane, of(b).poissonRatio);
       }
    }
-   damped = ha.dampingRatio > 0 && hb.dampingRatio > 0;
-   return compose(ha, hb, l, m_options.beam, true, reduced(assembly.mass[a], assembly.mass[b]),
+   damped = ha.damped() && hb.damped();
+   return compose(ha, hb, l, m_options.beam, m_options.stepped, reduced(assembly.mass[a], assembly.mass[b]),
                   {turning(axes.r0), turning(axes.r1), turning(axes.r2)});
 }
 

@@ -1,6 +1,6 @@
-// Force and torques of one bond: the exact gradient of U = 1/2 d.K d + 1/2 phi.C phi in the middle frame, for
-// any rotation, with damping that acts on strain rates only. Everything is in bond axes: x along the bond at
-// rest.
+// Force and torques of one bond: the exact gradient of U = 1/2 d.K d + 1/2 phi.C phi in the middle frame, or for
+// a stepped beam in one nearer to the stiffer end, for any rotation, with damping that acts on strain rates
+// only. Everything is in bond axes: x along the bond at rest.
 #pragma once
 
 #include "model/vector.h"
@@ -8,13 +8,13 @@
 namespace bonds {
 
 /// Stiffnesses of a bond (N/m; N m/rad) and their dampings. `s` moves the elastic centre of each bending
-/// plane towards the softer half: the transverse strains are u_y + s[0] phi_z and u_z - s[1] phi_y, which
-/// makes a stepped beam exact.
+/// plane towards the softer half, which makes a stepped beam exact: the frame that strains are seen in is the
+/// middle one turned back by `turn` = s / length of the relative turn (Step, below).
 struct BondConstants
 {
    double k[3]{}; // axial, shear y, shear z
    double c[3]{}; // torsion, bending about y, bending about z
-   double s[2]{}; // m
+   double s[2]{}, turn[2]{}; // m; parts, zero where a beam is the same at both ends
    double d[3]{}, e[3]{};
 };
 
@@ -82,17 +82,45 @@ inline Relation relate(const Ends &ends)
    return r;
 }
 
-/// Generalised strains: d (with the stepped coupling) and phi, both relative to the actuated rest.
-template<bool Coupled>
-inline void strains(const Relation &r, const BondConstants &k, Vec3 restD, Vec3 restPhi, Vec3 &d, Vec3 &phi)
+/// The turn Q from vectors in the middle frame to those in the frame of a stepped beam. To first order it adds
+/// s[0] phi_z and -s[1] phi_y to the transverse strains; being a turn, it leaves the length of a bond that only
+/// bends as it is, where the sums alone would stretch it by half the square of s phi / length. The turn is
+/// Cayley's of the vector, which differs from the exponential by a twelfth of its cube.
+struct Step
 {
-   d = r.u - restD;
-   phi = r.phi - restPhi;
-   if constexpr (Coupled) {
-      d.y += k.s[0] * phi.z;
-      d.z -= k.s[1] * phi.y;
+   Vec3 a;       // half the turn's vector
+   double f = 1; // 1 / (1 + a.a)
+
+   static Vec3 scaledTurn(const BondConstants &k, Vec3 phi)
+   {
+      return {0, k.turn[1] * phi.y, k.turn[0] * phi.z};
    }
-}
+   Step() = default;
+   Step(const BondConstants &k, Vec3 phi) : a(0.5 * scaledTurn(k, phi)), f(1 / (1 + dot(a, a))) {}
+
+   /// Q v - v
+   Vec3 change(Vec3 v) const
+   {
+      const Vec3 first = cross(a, v);
+      return (2 * f) * (first + cross(a, first));
+   }
+   Vec3 to(Vec3 v) const { return v + change(v); }
+   Vec3 back(Vec3 v) const
+   {
+      const Vec3 first = cross(a, v);
+      return v + (2 * f) * (cross(a, first) - first);
+   }
+   /// Spin of Q by the rate of phi, and its transpose: moments by a moment.
+   Vec3 spin(const BondConstants &k, Vec3 phiRate) const
+   {
+      const Vec3 rate = scaledTurn(k, phiRate);
+      return f * (rate + cross(a, rate));
+   }
+   Vec3 moments(const BondConstants &k, Vec3 moment) const
+   {
+      return scaledTurn(k, f * (moment - cross(a, moment)));
+   }
+};
 
 inline Vec3 scaled(const double (&k)[3], Vec3 a) { return {k[0] * a.x, k[1] * a.y, k[2] * a.z}; }
 
@@ -104,9 +132,14 @@ template<bool Damped, bool Coupled, bool Exact>
 inline void evaluate(const Ends &ends, const BondConstants &k, Vec3 restD, Vec3 restPhi, BondForces &out)
 {
    const Relation r = relate(ends);
-   Vec3 d, phi;
-   strains<Coupled>(r, k, restD, restPhi, d, phi);
-   Vec3 f = scaled(k.k, d);
+   const Vec3 phi = r.phi - restPhi;
+   Step step;
+   Vec3 u = r.u;
+   if constexpr (Coupled) {
+      step = Step(k, phi);
+      u = step.to(u);
+   }
+   Vec3 f = scaled(k.k, u - restD);
    Vec3 c = scaled(k.c, phi);
    if constexpr (Damped) {
       const Vec3 wa = transposed(r.middle, ends.wa), wb = transposed(r.middle, ends.wb);
@@ -117,18 +150,16 @@ inline void evaluate(const Ends &ends, const BondConstants &k, Vec3 restD, Vec3 
          mean = mean - 0.5 * cross(r.half, dw);
       }
       Vec3 dRate = transposed(r.middle, ends.dv) + cross(r.u, mean);
-      if constexpr (Coupled) {
-         dRate.y += k.s[0] * phiRate.z;
-         dRate.z -= k.s[1] * phiRate.y;
-      }
+      if constexpr (Coupled)
+         dRate = step.to(dRate) + cross(step.spin(k, phiRate), u);
       const Vec3 fd = scaled(k.d, dRate), cd = scaled(k.e, phiRate);
       out.power = dot(fd, dRate) + dot(cd, phiRate);
       f = f + fd;
       c = c + cd;
    }
    if constexpr (Coupled) {
-      c.z += k.s[0] * f.y;
-      c.y -= k.s[1] * f.z;
+      c = c + step.moments(k, cross(u, f));
+      f = step.back(f);
    }
    const Vec3 g = cross(f, r.u);
    Vec3 h = c;
@@ -142,8 +173,7 @@ inline void evaluate(const Ends &ends, const BondConstants &k, Vec3 restD, Vec3 
 /// J stored in a bond.
 inline double bondEnergy(const Relation &r, const BondConstants &k, Vec3 restD, Vec3 restPhi)
 {
-   Vec3 d, phi;
-   strains<true>(r, k, restD, restPhi, d, phi);
+   const Vec3 phi = r.phi - restPhi, d = Step(k, phi).to(r.u) - restD;
    return 0.5 * (dot(scaled(k.k, d), d) + dot(scaled(k.c, phi), phi));
 }
 

@@ -16,7 +16,7 @@ struct BondEnds
    Vec3 dv, wa, wb; // velocity of b minus that of a, spins; only for damping
 };
 
-/// State of a bond; vectors are in its middle frame.
+/// State of a bond; vectors are in its middle frame but for those of a stepped beam's own.
 struct BondPoint
 {
    Mat3 middle;
@@ -27,6 +27,8 @@ struct BondPoint
    double s = 1, p = 0;   // S = s I + p v v
    double ds = 0, dp = 0; // rates of s and p per unit of v . phi'
    Vec3 f, c;             // force, moment conjugate to phi
+   Step step;             // to the frame of a stepped beam, and there:
+   Vec3 ownU, ownF;       // separation, force
    Vec3 g, h;             // f x u; what the torques share with opposite signs
 };
 
@@ -42,19 +44,6 @@ inline double rateOfP(double nn, double w, double p, double ds)
        nn * (10.0 / 112 +
              nn * (105.0 / 1152 + nn * (252.0 / 2816 + nn * (1155.0 / 13312 + nn * (858.0 / 10240)))));
    return -w * slope;
-}
-
-/// d and phi follow from displacement and turn; the same map takes their rates.
-inline void couple(const BondConstants &k, Vec3 phi, Vec3 &d)
-{
-   d.y += k.s[0] * phi.z;
-   d.z -= k.s[1] * phi.y;
-}
-/// Its transpose: what the transverse force adds to the moments.
-inline void coupleBack(const BondConstants &k, Vec3 f, Vec3 &c)
-{
-   c.z += k.s[0] * f.y;
-   c.y -= k.s[1] * f.z;
 }
 
 } // namespace detail
@@ -90,6 +79,13 @@ inline BondPoint bondGeometry(const BondEnds &ends)
 /// S c with S = s I + p v v^T.
 inline Vec3 turned(const BondPoint &r, Vec3 c) { return r.s * c + (r.p * dot(r.v, c)) * r.v; }
 
+/// Strain of the separation in the bond's own frame; `phi` and `stretch` are relative to the actuated rest. Its
+/// digits are those of `stretch`.
+inline Vec3 ownStrain(const BondPoint &r, const BondConstants &k, Vec3 phi, Vec3 stretch)
+{
+   return stretch + Step(k, phi).change(r.u);
+}
+
 /// Rates of the generalised strains from velocities and spins in the middle frame (bond-model.md, Damping).
 inline void strainRates(const BondPoint &r, const BondConstants &k, Vec3 dv, Vec3 wa, Vec3 wb, Vec3 &d,
                         Vec3 &phi, Vec3 &middleSpin)
@@ -97,8 +93,7 @@ inline void strainRates(const BondPoint &r, const BondConstants &k, Vec3 dv, Vec
    const Vec3 dw = wb - wa;
    phi = turned(r, dw);
    middleSpin = 0.5 * (wa + wb - cross(r.half, dw));
-   d = dv + cross(r.u, middleSpin);
-   detail::couple(k, phi, d);
+   d = r.step.to(dv + cross(r.u, middleSpin)) + cross(r.step.spin(k, phi), r.ownU);
 }
 
 /// Forces of the bond; `stretch` is the change of rest separation, `turn` the actuated rest rotation.
@@ -107,18 +102,19 @@ inline BondPoint bondPoint(const BondEnds &ends, const BondConstants &k, Vec3 st
 {
    BondPoint r = bondGeometry(ends);
    const Vec3 phi = r.phi - turn;
-   Vec3 d = r.stretch - stretch;
-   detail::couple(k, phi, d);
-   r.f = scaled(k.k, d);
+   r.step = Step(k, phi);
+   r.ownU = r.step.to(r.u);
+   r.ownF = scaled(k.k, ownStrain(r, k, phi, r.stretch - stretch));
    r.c = scaled(k.c, phi);
    if constexpr (Damped) {
       Vec3 dRate, phiRate, spin;
       strainRates(r, k, transposed(r.middle, ends.dv), transposed(r.middle, ends.wa),
                   transposed(r.middle, ends.wb), dRate, phiRate, spin);
-      r.f = r.f + scaled(k.d, dRate);
+      r.ownF = r.ownF + scaled(k.d, dRate);
       r.c = r.c + scaled(k.e, phiRate);
    }
-   detail::coupleBack(k, r.f, r.c);
+   r.c = r.c + r.step.moments(k, cross(r.ownU, r.ownF));
+   r.f = r.step.back(r.ownF);
    r.g = cross(r.f, r.u);
    r.h = turned(r, r.c) - 0.5 * cross(r.g, r.half);
    return r;
@@ -142,9 +138,12 @@ inline EndForces forceChange(const BondPoint &r, const BondConstants &k, Vec3 dv
 {
    Vec3 dd, y, spin;
    strainRates(r, k, dv, wa, wb, dd, y, spin);
-   const Vec3 df = scaled(k.k, dd);
-   Vec3 dc = scaled(k.c, y);
-   detail::coupleBack(k, df, dc);
+   const Vec3 ownDf = scaled(k.k, dd), moment = cross(r.ownU, r.ownF), da = 0.5 * Step::scaledTurn(k, y);
+   const Vec3 df = r.step.back(ownDf - cross(r.step.spin(k, y), r.ownF));
+   // The moments' change: by the moment, and by what a step of another size makes of it.
+   const Vec3 dc = scaled(k.c, y) + r.step.moments(k, cross(dd, r.ownF) + cross(r.ownU, ownDf)) -
+                   Step::scaledTurn(k, r.step.f * cross(da, moment)) -
+                   (2 * r.step.f * dot(r.step.a, da)) * r.step.moments(k, moment);
    const double a = dot(r.v, y), vc = dot(r.v, r.c);
    const Vec3 v1 = (0.5 / r.s) * y - (r.ds * a / r.s) * r.v; // change of v
    const double f = 1 / (1 + r.w);

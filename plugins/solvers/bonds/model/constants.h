@@ -11,14 +11,21 @@ namespace bonds {
 enum class Beam { timoshenko, thesis, euler };
 
 /// Constants that a bond of full length l would have if both its halves were like this one.
-struct HalfBond
+struct HalfConstants
 {
    double axial = 0;
    double shear[2]{};   // along y, z: G A_s / l
    double bending[2]{}; // about y, z: E I / l
    double torsion = 0;  // G J / l
-   double dense[2]{};   // stiffness across in place of what the beam theory says; 0 = as it says
+};
+
+struct HalfBond : HalfConstants
+{
+   double dense[2]{}; // stiffness across in place of what the beam theory says; 0 = as it says
    double dampingRatio = 0;
+   bool ownDamping = false; // `damping` instead of the ratio; it goes by the beam theory like stiffness
+   HalfConstants damping;
+   bool damped() const { return ownDamping || dampingRatio > 0; }
 };
 
 /// Saint-Venant torsion constant of a rectangle (Timoshenko and Goodier, Theory of Elasticity, article 109).
@@ -69,7 +76,7 @@ inline double series(double a, double b) { return a + b > 0 ? 2 * a * b / (a + b
 
 /// Stiffness across the bond of a half: plane 0 displaces along y and bends about z, plane 1 along z and
 /// about y.
-inline double transverse(const HalfBond &half, int plane, double l, Beam beam)
+inline double transverse(const HalfConstants &half, int plane, double l, Beam beam)
 {
    const double shear = half.shear[plane], bend = 12 * half.bending[1 - plane] / (l * l);
    if (beam == Beam::thesis)
@@ -81,35 +88,45 @@ inline double transverse(const HalfBond &half, int plane, double l, Beam beam)
 
 /// Composite of halves a and b. The elastic centre s* = (l/4)(kb1 - kb2)/(kb1 + kb2) and 1/kappa* = 1/kappa -
 /// s*^2/kb are the exact stepped beam (validation README, "What to know" 3). `mass` and `inertia` (per bond
-/// axis) are the reduced ones of the free pair: damping is the bond's own, whatever the supports.
+/// axis) are the reduced ones of the free pair: a damping ratio is the bond's own, whatever the supports.
 inline BondConstants compose(const HalfBond &a, const HalfBond &b, double l, Beam beam, bool stepped,
                              double mass, const double (&inertia)[3])
 {
-   const auto damping = [&](double ka, double kb, double m) {
-      return series(2 * a.dampingRatio * std::sqrt(ka * m), 2 * b.dampingRatio * std::sqrt(kb * m));
+   const auto ofHalf = [](const HalfBond &half, double own, double k, double m) {
+      return half.ownDamping ? own : 2 * half.dampingRatio * std::sqrt(k * m);
+   };
+   const auto damping = [&](double ownA, double ownB, double ka, double kb, double m) {
+      return series(ofHalf(a, ownA, ka, m), ofHalf(b, ownB, kb, m));
    };
    BondConstants out;
    out.k[0] = series(a.axial, b.axial);
-   out.d[0] = damping(a.axial, b.axial, mass);
+   out.d[0] = damping(a.damping.axial, b.damping.axial, a.axial, b.axial, mass);
    out.c[0] = series(a.torsion, b.torsion);
-   out.e[0] = damping(a.torsion, b.torsion, inertia[0]);
+   out.e[0] = damping(a.damping.torsion, b.damping.torsion, a.torsion, b.torsion, inertia[0]);
    for (int i = 0; i < 2; ++i) {
       out.c[1 + i] = series(a.bending[i], b.bending[i]);
-      out.e[1 + i] = damping(a.bending[i], b.bending[i], inertia[1 + i]);
+      out.e[1 + i] =
+          damping(a.damping.bending[i], b.damping.bending[i], a.bending[i], b.bending[i], inertia[1 + i]);
    }
    for (int plane = 0; plane < 2; ++plane) {
       const bool dense = a.dense[plane] > 0 && b.dense[plane] > 0;
       const double ka = dense ? a.dense[plane] : transverse(a, plane, l, beam);
       const double kb = dense ? b.dense[plane] : transverse(b, plane, l, beam);
       out.k[1 + plane] = series(ka, kb);
-      out.d[1 + plane] = damping(ka, kb, mass);
+      out.d[1 + plane] =
+          damping(transverse(a.damping, plane, l, beam), transverse(b.damping, plane, l, beam), ka, kb, mass);
       const double ba = a.bending[1 - plane], bb = b.bending[1 - plane];
       if (!stepped || dense || beam == Beam::thesis || ba == bb || out.k[1 + plane] == 0 ||
           series(ba, bb) == 0)
          continue;
       const double s = l / 4 * (ba - bb) / (ba + bb);
       out.s[plane] = s;
+      out.turn[plane] = s / l;
       out.k[1 + plane] = 1 / (1 / out.k[1 + plane] - s * s / series(ba, bb));
+      // Dampings in proportion to stiffnesses stay so.
+      const double d = out.d[1 + plane], e = out.e[2 - plane];
+      if (a.ownDamping && b.ownDamping && d > 0 && s * s * d < e)
+         out.d[1 + plane] = 1 / (1 / d - s * s / e);
    }
    return out;
 }
