@@ -141,10 +141,48 @@ struct BondLaw
 {
    V length;
    Three<V> k, c;
-   V s[2];
+   V part[2]; // of the relative turn, BondConstants::turn
    Three<V> d, e;
    Three<V> stretch, turn; // actuated rest shape
 };
+
+/// Step of model/bond_kernel.h: the turn from the middle frame to that of a stepped beam.
+template<class V>
+struct SteppedFrame
+{
+   Three<V> a; // half the turn's vector
+   V f, twice; // 1 / (1 + a.a)
+
+   template<bool kFused>
+   HWY_INLINE Three<V> change(const Three<V> &v) const
+   {
+      const Three<V> first = cross<kFused>(a, v);
+      return twice * (first + cross<kFused>(a, first));
+   }
+   template<bool kFused>
+   HWY_INLINE Three<V> changeBack(const Three<V> &v) const
+   {
+      const Three<V> first = cross<kFused>(a, v);
+      return twice * (cross<kFused>(a, first) - first);
+   }
+};
+
+template<class V>
+HWY_INLINE Three<V> scaledTurn(const BondLaw<V> &k, const Three<V> &phi)
+{
+   return {hn::Xor(phi.x, phi.x), hn::Mul(k.part[1], phi.y), hn::Mul(k.part[0], phi.z)};
+}
+
+template<bool kFused, class D, class V>
+HWY_INLINE SteppedFrame<V> stepOf(D d, const BondLaw<V> &k, const Three<V> &phi)
+{
+   const V one = hn::Set(d, 1), half = hn::Set(d, static_cast<hn::TFromD<D>>(0.5));
+   SteppedFrame<V> step;
+   step.a = half * scaledTurn(k, phi);
+   step.f = hn::Div(one, hn::Add(one, dot<kFused>(step.a, step.a)));
+   step.twice = hn::Add(step.f, step.f);
+   return step;
+}
 
 template<class V>
 struct BondOut
@@ -180,16 +218,19 @@ HWY_INLINE BondOut<V> bondLaw(D d, BondState<V> in, const BondLaw<V> &k)
    Three<V> e = rotateBack<kFused>(r, in.du);
    e = {nmad<kFused>(k.length, bent, e.x), mad<kFused>(k.length, r[0].y, e.y),
         mad<kFused>(k.length, r[0].z, e.z)};
-   const Three<V> u{hn::Add(e.x, k.length), e.y, e.z};
+   Three<V> u{hn::Add(e.x, k.length), e.y, e.z};
+   const Three<V> apart = u;
    V s, p;
    arcRatio<kFused>(d, dot<kFused>(v, v), inv, s, p);
    Three<V> phi = hn::Add(s, s) * v;
    const Three<V> quarter = inv * v; // tan(|phi|/4) n
+   [[maybe_unused]] SteppedFrame<V> step;
    if constexpr (kGeneral) {
-      e = e - k.stretch;
       phi = phi - k.turn;
-      e.y = mad<kFused>(k.s[0], phi.z, e.y);
-      e.z = nmad<kFused>(k.s[1], phi.y, e.z);
+      step = stepOf<kFused>(d, k, phi);
+      const Three<V> change = step.template change<kFused>(u);
+      u = u + change;
+      e = e + change - k.stretch;
    }
    BondOut<V> out;
    Three<V> force{hn::Mul(k.k.x, e.x), hn::Mul(k.k.y, e.y), hn::Mul(k.k.z, e.z)};
@@ -198,10 +239,11 @@ HWY_INLINE BondOut<V> bondLaw(D d, BondState<V> in, const BondLaw<V> &k)
       const Three<V> dw = rotateBack<kFused>(r, in.dw), sum = rotateBack<kFused>(r, in.sum);
       const Three<V> phiRate = mad<kFused>(hn::Mul(p, dot<kFused>(v, dw)), v, s * dw);
       const Three<V> mean = half * (sum - cross<kFused>(quarter, dw));
-      Three<V> rate = rotateBack<kFused>(r, in.dv) + cross<kFused>(u, mean);
+      Three<V> rate = rotateBack<kFused>(r, in.dv) + cross<kFused>(apart, mean);
       if constexpr (kGeneral) {
-         rate.y = mad<kFused>(k.s[0], phiRate.z, rate.y);
-         rate.z = nmad<kFused>(k.s[1], phiRate.y, rate.z);
+         const Three<V> turning = scaledTurn(k, phiRate);
+         const Three<V> spin = step.f * (turning + cross<kFused>(step.a, turning));
+         rate = rate + step.template change<kFused>(rate) + cross<kFused>(spin, u);
       }
       const Three<V> fd{hn::Mul(k.d.x, rate.x), hn::Mul(k.d.y, rate.y), hn::Mul(k.d.z, rate.z)},
           cd{hn::Mul(k.e.x, phiRate.x), hn::Mul(k.e.y, phiRate.y), hn::Mul(k.e.z, phiRate.z)};
@@ -210,10 +252,11 @@ HWY_INLINE BondOut<V> bondLaw(D d, BondState<V> in, const BondLaw<V> &k)
       c = c + cd;
    }
    if constexpr (kGeneral) {
-      c.z = mad<kFused>(k.s[0], force.y, c.z);
-      c.y = nmad<kFused>(k.s[1], force.z, c.y);
+      const Three<V> moment = cross<kFused>(u, force);
+      c = c + scaledTurn(k, step.f * (moment - cross<kFused>(step.a, moment)));
+      force = force + step.template changeBack<kFused>(force);
    }
-   const Three<V> g = half * cross<kFused>(force, u);
+   const Three<V> g = half * cross<kFused>(force, apart);
    Three<V> h = mad<kFused>(hn::Mul(p, dot<kFused>(v, c)), v, s * c);
    h = h - cross<kFused>(g, quarter);
    out.force = rotate<kFused>(r, force);

@@ -181,7 +181,7 @@ std::array<double, kConstants> Builder::constantsOf(const Bond &bond) const
       out[kDamping + 3 + j] = k.e[j];
    }
    for (std::size_t j = 0; j < 2; ++j)
-      out[kCoupling + j] = bond.reversed ? -k.s[j] : k.s[j];
+      out[kCoupling + j] = bond.reversed ? -k.turn[j] : k.turn[j];
    return out;
 }
 
