@@ -103,6 +103,14 @@ HandScene sceneOf(const QString &kind)
       return blockOf(12, 12, 12, 0.1, 3, 0.5);
    if (kind == "beam")
       return blockOf(40, 1, 1, 0);
+   if (kind == "actuated") { // and nothing else: no constants but those of its one material
+      HandScene scene = blockOf(7, 5, 6, 0);
+      scene.effects.push_back("actuation");
+      scene.addRow("source", {0, 1000, 0, 0.5, 0, 1}, 0);
+      for (int i = 0; i < scene.cells(); i += 3)
+         scene.addRow("actuator", {double(i % 4), double(i % 3), 0.1, 0, -1}, i);
+      return scene;
+   }
    if (kind == "askew")
       return askew(9, 0.1);
    HandScene scene = blockOf(9, 7, 5, kind == "all but damping" ? 0 : 0.2, 3);
@@ -158,8 +166,8 @@ void SolverBondsVectorTest::theMotionIsThatOfOneBondAtATime_data()
 {
    QTest::addColumn<QString>("kind");
    QTest::addColumn<QString>("integrator");
-   for (const char *kind : {"dense", "damped", "unlike materials", "sparse", "beam", "askew", "everything",
-                            "all but damping", "flat boxes"})
+   for (const char *kind : {"dense", "damped", "unlike materials", "sparse", "beam", "askew", "actuated",
+                            "everything", "all but damping", "flat boxes"})
       for (const char *integrator : {"semi_implicit", "verlet", "rk4"})
          QTest::addRow("%s, %s", kind, integrator) << QString(kind) << QString(integrator);
 }

@@ -65,9 +65,12 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
       }
       Three<V> frame[3];
       if constexpr (kGeneral) {
-         law.s[0] = constant(kCoupling);
-         law.s[1] = constant(kCoupling + 1);
          const V zero = hn::Zero(d);
+         law.s[0] = law.s[1] = zero;
+         if (run.flags & Run::coupled) {
+            law.s[0] = constant(kCoupling);
+            law.s[1] = constant(kCoupling + 1);
+         }
          law.stretch = law.turn = {zero, zero, zero};
          if (run.flags & Run::actuated) {
             constexpr std::size_t own[3] = {0, 1, 2};
