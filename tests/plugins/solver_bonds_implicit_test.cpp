@@ -128,10 +128,10 @@ void SolverBondsImplicitTest::numericalDampingSparesWhatIsResolved()
             qPrintable(QString("%1 %2").arg(losses[0]).arg(losses[1])));
 }
 
-/// A clamped rubber bar swings by a third of its length, without any damping, for 10^4 steps just below the
-/// explicit limit: the energy neither grows nor falls. The trapezoidal rule keeps the energy of linear motion;
-/// what large rotations add is of the order of the step squared. Ten times that step is too long without any
-/// damping (docs/implicit.md), and stable with the default.
+/// A clamped rubber bar swings by a third of its length, without any damping, for 10^4 steps of 0.2 ms, some
+/// thirty to a swing and seven times the explicit limit: the energy neither grows nor falls. The trapezoidal
+/// rule keeps the energy of linear motion; what large rotations add is of the order of the step squared.
+/// With twice that step it is lost without numerical damping (docs/implicit.md), and falls with the default.
 void SolverBondsImplicitTest::undampedEnergyStaysBounded()
 {
    HandScene scene = bar(6, 1e-3, kRubber);
@@ -143,7 +143,7 @@ void SolverBondsImplicitTest::undampedEnergyStaysBounded()
    const double start = run.stored();
    double least = start, most = start, swing = 0, first = 0, last = 0;
    for (int look = 0; look < 1000; ++look) {
-      QCOMPARE(run.to((look + 1) * 10 * 2e-5, 2e-5), DIATOM_OK);
+      QCOMPARE(run.to((look + 1) * 10 * 2e-4, 2e-4), DIATOM_OK);
       QVERIFY2(run.result.state == DIATOM_DONE, run.host.said.c_str());
       const double now = run.stored();
       least = std::min(least, now);
@@ -152,12 +152,16 @@ void SolverBondsImplicitTest::undampedEnergyStaysBounded()
       (look < 100 ? first : last) += look < 100 || look >= 900 ? now / 100 : 0;
    }
    Run damped(scene, implicit(0.2));
+   double highest = 0;
    for (int look = 1; look <= 100; ++look) {
-      QCOMPARE(damped.to(look * 100 * 2e-4, 2e-4), DIATOM_OK);
-      QVERIFY2(damped.result.state == DIATOM_DONE && damped.stored() < 1.001 * start, text(damped).c_str());
+      QCOMPARE(damped.to(look * 25 * 4e-4, 4e-4), DIATOM_OK);
+      QVERIFY2(damped.result.state == DIATOM_DONE, text(damped).c_str());
+      highest = std::max(highest, damped.stored());
    }
+   QVERIFY2(highest < start && damped.stored() > 0.8 * start,
+            qPrintable(QString("%1, at last %2").arg(highest / start).arg(damped.stored() / start)));
    QVERIFY2(swing > 2e-3, qPrintable(QString::number(swing)));
-   QVERIFY2(least > 0.9 * start && most < 1.1 * start && std::abs(last / first - 1) < 0.02,
+   QVERIFY2(least > 0.95 * start && most < 1.05 * start && std::abs(last / first - 1) < 0.02,
             qPrintable(QString("%1 %2 %3 swing %4")
                            .arg(least / start)
                            .arg(most / start)

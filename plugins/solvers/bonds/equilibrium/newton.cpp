@@ -15,7 +15,8 @@ constexpr double kRounding = 1e-13;
 /// Forces of a stiff scene that turns cannot be known better than this part of them.
 constexpr double kRoundingResidual = 1e-5;
 
-/// Sign of the cosine of half the relative turn of each bond: it changes where a bond passes half a turn.
+} // namespace
+
 bool passesHalfTurn(const Assembly &assembly, const State &from, const State &to)
 {
    const auto cosine = [](Quat a, Quat b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; };
@@ -28,8 +29,6 @@ bool passesHalfTurn(const Assembly &assembly, const State &from, const State &to
    }
    return false;
 }
-
-} // namespace
 
 Places placesOf(const Assembly &assembly, const State &state)
 {

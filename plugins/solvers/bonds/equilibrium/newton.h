@@ -8,6 +8,10 @@
 
 namespace bonds {
 
+/// Whether a bond comes to be turned by more than half a turn, or by less: what is shorter changes there, and
+/// the law jumps.
+bool passesHalfTurn(const Assembly &assembly, const State &from, const State &to);
+
 /// Where the cells are.
 Places placesOf(const Assembly &assembly, const State &state);
 

@@ -13,8 +13,8 @@ using sdk::Failure;
 
 namespace {
 
-/// Energy from nowhere, over the most in play so far, that ends a run.
-constexpr double kEnergyGrowth = 40;
+/// Energy from nowhere, over all that went in so far, that ends a run.
+constexpr double kEnergyGrowth = 4;
 constexpr std::int64_t kLookEvery = 16; // steps
 
 std::string text(double value)
@@ -72,6 +72,11 @@ ImplicitRun::ImplicitRun(const Options &options, const sdk::Values &values, cons
       throw Failure(DIATOM_UNSUPPORTED, "implicit steps need the exact gradient: leave gradient at exact");
    const auto e = m_motion.energy();
    m_start = e[0] + e[1] + e[2] + e[3];
+   const Assembly &assembly = m_balance.assembly();
+   double stiffest = 0;
+   for (std::int64_t i = 0; i < assembly.links; ++i)
+      stiffest = std::max(stiffest, assembly.constants[i].k[0] * assembly.length[i] * assembly.length[i]);
+   m_scale = e[0] + e[1] + e[3] + 1e-9 * stiffest; // 5e-5 strain in one bond is no growth
 }
 
 void ImplicitRun::apply(const sdk::Call &call, std::span<const diatom_channel> channels)
@@ -84,8 +89,8 @@ bool ImplicitRun::grown()
 {
    const auto e = m_motion.energy();
    const double balance = e[0] + e[1] + e[2] + e[3] + e[4] - e[5] - m_start;
-   m_most = std::max(m_most, e[0] + e[1] + e[3] + std::abs(e[2]) + std::abs(e[5]));
-   return !std::isfinite(balance) || balance > kEnergyGrowth * m_most;
+   m_most = std::max(m_most, std::abs(e[2]) + std::abs(e[5]));
+   return !std::isfinite(balance) || balance > kEnergyGrowth * (m_scale + m_most);
 }
 
 void ImplicitRun::reportFailure(const sdk::Call &call, double step, diatom_step_result &result)

@@ -30,7 +30,8 @@ private:
    Balance m_balance;
    ImplicitMotion m_motion;
    Readout m_readout;
-   double m_start = 0, m_most = 0; // J: stored at the start, most in play so far
+   // J: stored at the start; what a growth is held against: in motion at the start, most gone in since
+   double m_start = 0, m_scale = 0, m_most = 0;
    bool m_failed = false;
 };
 

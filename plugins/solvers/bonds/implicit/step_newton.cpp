@@ -13,13 +13,9 @@ constexpr double kSlow = 0.25;
 /// More corrections than this cost more than factors for the next step.
 constexpr int kMany = 6;
 /// What is left of the first correction, which is itself about what a step neglects.
-constexpr double kEnough = 1e-6;
+constexpr double kEnough = 1e-4;
 /// Factors of a step this much longer or shorter still serve.
 constexpr double kOtherStep = 0.1;
-/// Such a step converges as the last one did.
-constexpr double kSameStep = 1e-6;
-/// So many steps, before it is looked at again how fast.
-constexpr int kTrusted = 8;
 /// Turn of a cell in one step, rad, beyond which the answer may be another one than the motion leads to.
 constexpr double kMostTurn = 1.5;
 
@@ -70,7 +66,6 @@ void StepNewton::refresh(const sdk::Call &call, StepEquations &equations, const 
       m_symmetric = (own - own.transpose()).squaredNorm() < 1e-10 * own.squaredNorm();
    }
    m_length = equations.step();
-   m_contraction = 1;
    ++m_factorisations;
 }
 
@@ -117,14 +112,19 @@ bool StepNewton::improve(const sdk::Call &call, StepEquations &equations, const 
 StepNewton::End StepNewton::solve(const sdk::Call &call, StepEquations &equations, Vector &increment,
                                   Kinematics &to)
 {
-   increment = equations.predicted(1);
-   const End end = solveFrom(call, equations, increment, to);
+   const auto tried = [&](double part) {
+      increment = equations.predicted(part);
+      const End end = solveFrom(call, equations, increment, to);
+      const bool jumps =
+          end == End::converged && passesHalfTurn(m_balance->assembly(), equations.from().state, to.state);
+      return jumps ? End::failed : end;
+   };
+   const End end = tried(1);
    if (end != End::failed)
       return end;
    // Where the step is too long for them, speeds tell nothing of where the cells will be.
    forget();
-   increment = equations.predicted(0);
-   return solveFrom(call, equations, increment, to);
+   return tried(0);
 }
 
 /// With a first guess of the increments.
@@ -137,12 +137,7 @@ StepNewton::End StepNewton::solveFrom(const sdk::Call &call, StepEquations &equa
       refresh(call, equations, increment, to);
       pass.fresh = true;
    }
-   // One correction may do where forces are asked for only when all is over.
-   const bool forcesWait = !m_balance->assembly().hasGround && !m_balance->assembly().damped &&
-                           m_balance->supports().driven().empty();
    const double digits = rounding(to.state);
-   const bool alike = std::abs(equations.step() - m_length) <= kSameStep * m_length;
-   pass.contraction = forcesWait && alike && m_trusted > 0 ? m_contraction : 1;
    for (int n = 0; n < kMostIterations; ++n) {
       if (call.cancelled())
          return End::cancelled;
@@ -168,9 +163,6 @@ StepNewton::End StepNewton::solveFrom(const sdk::Call &call, StepEquations &equa
          pass.first = size;
       const double left = pass.contraction < 1 ? size * pass.contraction / (1 - pass.contraction) : size;
       if (exhausted || left <= kEnough * pass.first) {
-         const bool measured = n > 0 && !pass.careful;
-         m_trusted = measured ? kTrusted : m_trusted - 1;
-         m_contraction = pass.careful ? 1 : pass.contraction;
          if (n + 1 > kMany && !pass.fresh)
             forget();
          return End::converged;

@@ -47,9 +47,7 @@ private:
    const Balance *m_balance;
    BlockMatrix m_matrix;
    std::unique_ptr<Inverse> m_inverse;
-   double m_length = 0;      // s, step that the factors are of; 0 = none
-   double m_contraction = 1; // when it was last seen
-   int m_trusted = 0;        // steps that it may still be relied on
+   double m_length = 0; // s, step that the factors are of; 0 = none
    bool m_symmetric = true;
    std::int64_t m_iterations = 0, m_factorisations = 0;
 };
