@@ -2,6 +2,8 @@
 // step; cells that are no cubes keep their angular momentum, not their spin.
 #include "explicit/dynamics.h"
 
+#include <limits>
+
 namespace bonds {
 
 namespace {
@@ -25,20 +27,22 @@ Quat renormalised(Quat q)
 } // namespace
 
 template<unsigned... Effects>
-Dynamics::Piece Dynamics::select(unsigned effects, std::integer_sequence<unsigned, Effects...>)
+void Dynamics::select(unsigned effects, std::integer_sequence<unsigned, Effects...>)
 {
-   static constexpr Piece kTable[] = {&Dynamics::piece<Effects>...};
-   return kTable[effects];
+   static constexpr Piece kPieces[] = {&Dynamics::piece<Effects>...};
+   static constexpr Net kNets[] = {&Dynamics::net<Effects>...};
+   m_piece = kPieces[effects];
+   m_net = kNets[effects];
 }
 
 Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
                    const Options &options)
     : m_assembly(&assembly), m_couplings(&couplings), m_integrator(options.integrator),
-      m_actuation(scene, assembly), m_state(assembly.cells), m_rest(m_actuation.shape()), m_counted(m_rest),
-      m_bonds(assembly, m_actuation.active(), options.exact),
-      m_piece(select(effectsOf(assembly, couplings), std::make_integer_sequence<unsigned, 32>())),
+      m_exact(options.exact), m_actuation(scene, assembly), m_drive(scene, assembly), m_state(assembly.cells),
+      m_rest(m_actuation.shape()), m_counted(m_rest), m_bonds(assembly, m_actuation.active(), options.exact),
       m_sums(static_cast<std::size_t>((assembly.cells + kGrain - 1) / kGrain))
 {
+   select(effectsOf(assembly, couplings), std::make_integer_sequence<unsigned, 32>());
    const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
    if (m_integrator == Options::Integrator::rungeKutta) {
       m_start.resize(m_state.block.size());
@@ -57,6 +61,9 @@ Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const 
    for (std::int64_t i = 0; i < static_cast<std::int64_t>(assembly.velocity.size()); ++i)
       for (int k = 0; k < 6; ++k)
          m_state.column(7 + k)[i] = (assembly.fixed[i] >> k & 1) ? 0 : assembly.velocity[i][k];
+   startPose(scene, m_state);
+   if (m_drive.active())
+      m_drive.place(0, m_state);
 }
 
 void Dynamics::setLoads(const sdk::Channel &loads)
@@ -64,6 +71,13 @@ void Dynamics::setLoads(const sdk::Channel &loads)
    m_loads.assign(static_cast<std::size_t>(6 * m_assembly->cells), 0);
    for (std::int64_t i = 0; i < loads.count(); ++i)
       std::copy_n(loads.row(i), 6, m_loads.begin() + 6 * loads.where(i));
+}
+
+void Dynamics::setCurves(std::span<const diatom_channel> channels)
+{
+   if (!m_drive.active())
+      throw sdk::Failure(DIATOM_UNSUPPORTED, "nothing is driven: a change of \"curve\" needs a new run");
+   m_drive.setCurves(channels);
 }
 
 void Dynamics::save(double time, Snapshot &to) const
@@ -74,6 +88,8 @@ void Dynamics::save(double time, Snapshot &to) const
    to.dissipated = m_dissipated;
    to.work = m_work;
    to.time = time;
+   to.reached = m_drive.reached();
+   to.behind = m_behind;
 }
 
 void Dynamics::restore(const Snapshot &from)
@@ -84,6 +100,8 @@ void Dynamics::restore(const Snapshot &from)
    m_actuation = from.actuation;
    m_dissipated = from.dissipated;
    m_work = from.work;
+   m_drive.goBack(from.reached);
+   m_behind = from.behind;
 }
 
 template<unsigned Effects>
@@ -115,23 +133,6 @@ void Dynamics::net(std::int64_t i, double ahead, double weight, Vec3 &force, Vec
       addContact(assembly, m_state, i, ahead, weight, force, torque, sums);
 }
 
-void Dynamics::kick(std::int64_t i, double dt, Vec3 force, Vec3 torque)
-{
-   const Assembly &assembly = *m_assembly;
-   m_state.velocity(0)[i] += dt * assembly.inverseMass[0][i] * force.x;
-   m_state.velocity(1)[i] += dt * assembly.inverseMass[1][i] * force.y;
-   m_state.velocity(2)[i] += dt * assembly.inverseMass[2][i] * force.z;
-   if (assembly.boxes) {
-      const Quat q = m_state.turnOf(i);
-      m_state.setSpin(
-          i, spinFrom(assembly, i, q, spinMomentum(assembly, i, q, m_state.spinOf(i)) + dt * torque));
-      return;
-   }
-   m_state.spin(0)[i] += dt * assembly.inverseInertia[0][i] * torque.x;
-   m_state.spin(1)[i] += dt * assembly.inverseInertia[1][i] * torque.y;
-   m_state.spin(2)[i] += dt * assembly.inverseInertia[2][i] * torque.z;
-}
-
 void Dynamics::drift(std::int64_t i, double dt)
 {
    for (int k = 0; k < 3; ++k)
@@ -145,10 +146,10 @@ void Dynamics::drift(std::int64_t i, double dt)
    // Torque-free turn of a box: spin at the middle of the step from its constant angular momentum, second
    // order.
    const Vec3 momentum = spinMomentum(*m_assembly, i, q, w);
-   w = spinFrom(*m_assembly, i, exponential((0.5 * dt) * w) * q, momentum);
+   w = spinFrom(*m_assembly, i, exponential((0.5 * dt) * w) * q, momentum, w);
    const Quat now = renormalised(exponential(dt * w) * q);
    m_state.setTurn(i, now);
-   m_state.setSpin(i, spinFrom(*m_assembly, i, now, momentum));
+   m_state.setSpin(i, spinFrom(*m_assembly, i, now, momentum, w));
 }
 
 void Dynamics::stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque)
@@ -159,7 +160,7 @@ void Dynamics::stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 for
    Vec3 spinRate{assembly.inverseInertia[0][i] * torque.x, assembly.inverseInertia[1][i] * torque.y,
                  assembly.inverseInertia[2][i] * torque.z};
    if (assembly.boxes)
-      spinRate = spinFrom(assembly, i, q, torque - cross(w, spinMomentum(assembly, i, q, w)));
+      spinRate = spinFrom(assembly, i, q, torque - cross(w, spinMomentum(assembly, i, q, w)), {});
    const double rate[13] = {v.x,
                             v.y,
                             v.z,
@@ -209,7 +210,7 @@ void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t be
       switch (phase) {
       case Phase::kickDrift:
          net<Effects>(i, 0, dt, force, torque, sums);
-         kick(i, dt, force, torque);
+         kickCell(*m_assembly, i, dt, force, torque, m_state);
          countLoad(i, dt);
          moveGrip(i, dt);
          drift(i, dt);
@@ -223,14 +224,14 @@ void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t be
          for (int k = 0; k < 6; ++k)
             m_start[k * m_state.n + i] = m_state.column(7 + k)[i];
          net<Effects>(i, 0, 0, force, torque, sums);
-         kick(i, 0.5 * dt, force, torque);
+         kickCell(*m_assembly, i, 0.5 * dt, force, torque, m_state);
          break;
       case Phase::kickHalfDrift:
          net<Effects>(i, 0, dt, force, torque, sums);
          if (predicted)
             for (int k = 0; k < 6; ++k)
                m_state.column(7 + k)[i] = m_start[k * m_state.n + i];
-         kick(i, dt, force, torque);
+         kickCell(*m_assembly, i, dt, force, torque, m_state);
          countLoad(i, 0.5 * dt);
          moveGrip(i, 0.5 * dt);
          drift(i, 0.5 * dt);
@@ -288,6 +289,45 @@ void Dynamics::acceptRest()
       m_counted = m_rest;
 }
 
+/// Work of the drives against the forces of the moment, at the velocities of the moment over `time`. What
+/// they put into momentum is counted when a step ends.
+void Dynamics::countDrive(double time)
+{
+   constexpr double kAhead = std::numeric_limits<double>::min(); // no time, but friction is not to slip twice
+   for (const Drive::Led &led : m_drive.cells()) {
+      Vec3 force, torque;
+      Sums sums;
+      (this->*m_net)(led.cell, kAhead, 0, force, torque, sums);
+      const double f[6] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+      for (int k = 0; k < 6; ++k)
+         if (led.mask >> k & 1)
+            m_work -= time * f[k] * m_state.column(7 + k)[led.cell];
+   }
+}
+
+Acting Dynamics::acting() const
+{
+   return actingOn(*m_assembly, *m_couplings, m_state, rest(), m_loads, m_exact);
+}
+
+State Dynamics::caughtUp(const Acting &acting) const
+{
+   State now = m_state;
+   if (m_behind > 0)
+      kickBy(*m_assembly, acting, m_behind, now);
+   return now;
+}
+
+double Dynamics::workBy(const Acting &acting) const
+{
+   double work = m_work;
+   for (const Drive::Led &led : m_drive.cells())
+      for (int k = 0; k < 6; ++k)
+         if (led.mask >> k & 1)
+            work -= m_behind * acting.all[6 * led.cell + k] * m_state.column(7 + k)[led.cell];
+   return work;
+}
+
 // The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
 // are before and after the step: second order, and exact for a jump while nothing moves.
 void Dynamics::step(const sdk::Call &call, double time, double dt)
@@ -299,22 +339,32 @@ void Dynamics::step(const sdk::Call &call, double time, double dt)
       m_work += 0.5 * restChange(time + dt);
       m_actuation.setRest(time, m_rest);
    }
+   if (m_drive.active() && m_integrator != Options::Integrator::semiImplicit)
+      m_drive.lead(*m_assembly, time, dt, m_state);
    if (m_integrator == Options::Integrator::rungeKutta)
       rungeKutta(call, time, dt);
    else if (m_integrator == Options::Integrator::verlet)
       verlet(call, time, dt);
    else
-      semiImplicit(call, dt);
+      semiImplicit(call, time, dt);
+   if (m_drive.active())
+      m_work += m_drive.arrive(*m_assembly, dt, m_state);
    if (actuated) {
       m_work += 0.5 * restChange(time + dt);
       acceptRest();
    }
 }
 
-void Dynamics::semiImplicit(const sdk::Call &call, double dt)
+void Dynamics::semiImplicit(const sdk::Call &call, double time, double dt)
 {
    bondForces(call, dt);
+   if (m_drive.active()) {
+      countDrive(m_behind);
+      m_drive.lead(*m_assembly, time, dt, m_state);
+      countDrive(0.5 * dt);
+   }
    cells(call, Phase::kickDrift, dt);
+   m_behind = 0.5 * dt;
 }
 
 void Dynamics::verlet(const sdk::Call &call, double time, double dt)
@@ -327,6 +377,7 @@ void Dynamics::verlet(const sdk::Call &call, double time, double dt)
       cells(call, Phase::predict, dt);
    }
    bondForces(call, dt);
+   countDrive(dt);
    cells(call, Phase::kickHalfDrift, dt);
 }
 
@@ -340,6 +391,7 @@ void Dynamics::rungeKutta(const sdk::Call &call, double time, double dt)
       if (m_actuation.active())
          m_actuation.setRest(time + stage.ahead, m_rest);
       bondForces(call, dt * stage.weight);
+      countDrive(dt * stage.weight);
       cells(call, Phase::stage, dt, stage);
    }
 }

@@ -57,12 +57,10 @@ ExplicitRun::ExplicitRun(const Options &options, const sdk::SceneView &scene)
                                                 {"angular_velocity", "rad/s", m_assembly.cells, 3},
                                                 {"energy", "J", 1, 6},
                                                 {"momentum", "", 1, 6},
-                                                {"strain", "", m_assembly.cells, 1}}}
+                                                {"strain", "", m_assembly.cells, 1},
+                                                {"internal_force", "N", m_assembly.cells, 6},
+                                                {"reaction", "N", m_assembly.cells, 6}}}
 {
-   if (scene.hasEffect("driven") || scene.channel("pose", 6))
-      throw Failure(DIATOM_UNSUPPORTED,
-                    "motion in time does not yet follow curves or start from a pose; ask for "
-                    "the static balance, or move the cells by forces");
    const Energies start = energiesNow();
    m_balance = start.stored();
    double stiffest = 0;
@@ -77,10 +75,13 @@ ExplicitRun::ExplicitRun(const Options &options, const sdk::SceneView &scene)
 void ExplicitRun::apply(const sdk::Call &, std::span<const diatom_channel> channels)
 {
    const std::int64_t cells = m_assembly.cells;
+   m_acting.reset();
    for (const diatom_channel &channel : channels) {
       const std::string_view name = channel.name;
       if (name == "force" && m_assembly.hasLoads)
          m_dynamics.setLoads(sdk::findChannel(channels, name, 6, cells));
+      else if (name == "curve")
+         m_dynamics.setCurves(channels);
       else if (name == "source")
          m_dynamics.setSources(sdk::findChannel(channels, name, 6, cells));
       else if (name == "gravity" && m_assembly.hasGravity && channel.count == 1) {
@@ -119,6 +120,13 @@ double ExplicitRun::chooseStep(const diatom_step_request &request) const
    return request.step;
 }
 
+const Acting &ExplicitRun::acting() const
+{
+   if (!m_acting)
+      m_acting = m_dynamics.acting();
+   return *m_acting;
+}
+
 bool ExplicitRun::diverged()
 {
    const Energies now = energiesNow();
@@ -148,6 +156,7 @@ std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request 
                                diatom_step_result &result)
 {
    const FlushDenormals mode;
+   m_acting.reset();
    result.steps = 0;
    result.bad_cell = result.bad_link = -1;
    result.state = m_failed ? DIATOM_DIVERGED : DIATOM_RUNNING;
@@ -213,9 +222,14 @@ void ExplicitRun::read(std::int64_t output, std::int64_t first, std::int64_t cou
    } else if (output == 3) {
       rows(10, 3);
    } else if (output == 4 && count == 1) {
-      const Energies now = energiesNow();
-      const double all[6] = {now.kinetic,      now.elastic, now.gravity, now.contact, m_dynamics.dissipated(),
-                             m_dynamics.work()};
+      const Energies now =
+          energies(m_assembly, m_couplings, m_dynamics.caughtUp(acting()), m_dynamics.rest());
+      const double all[6] = {now.kinetic,
+                             now.elastic,
+                             now.gravity,
+                             now.contact,
+                             m_dynamics.dissipated(),
+                             m_dynamics.workBy(acting())};
       std::copy_n(all, 6, values);
    } else if (output == 5 && count == 1) {
       const Momenta now = momenta(m_assembly, state);
@@ -225,6 +239,11 @@ void ExplicitRun::read(std::int64_t output, std::int64_t first, std::int64_t cou
    } else if (output == 6) {
       const Column all = strains(m_assembly, state, m_dynamics.rest());
       std::copy_n(all.begin() + first, count, values);
+   } else if (output == 7) {
+      std::copy_n(acting().internal.begin() + 6 * first, 6 * count, values);
+   } else if (output == 8) {
+      const Column all = reactions(m_assembly, state, acting());
+      std::copy_n(all.begin() + 6 * first, 6 * count, values);
    }
 }
 

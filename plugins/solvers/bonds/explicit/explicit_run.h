@@ -7,6 +7,8 @@
 #include "model/energy.h"
 #include "model/stable_step.h"
 
+#include <optional>
+
 namespace bonds {
 
 class ExplicitRun : public Analysis
@@ -30,6 +32,7 @@ private:
    {
       return energies(m_assembly, m_couplings, m_dynamics.state(), m_dynamics.rest());
    }
+   const Acting &acting() const;
    bool diverged();
    std::string whereText(std::int64_t bond, std::int64_t cell) const;
    void reportDivergence(const sdk::Call &call, double time, double step, diatom_step_result &result);
@@ -46,7 +49,8 @@ private:
    double m_scale = 0, m_work = 0, m_fall = 0; // J: what has gone in so far
    std::int64_t m_sinceCheck = 0;
    bool m_failed = false;
-   std::array<diatom_output, 7> m_output;
+   mutable std::optional<Acting> m_acting; // of the present moment, once asked for
+   std::array<diatom_output, 9> m_output;
    diatom_outputs m_outputs{};
 };
 

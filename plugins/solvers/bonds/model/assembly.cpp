@@ -133,6 +133,10 @@ void Assembly::readSupports(const sdk::SceneView &scene)
    const auto supports = scene.channel("fixed", 1);
    for (std::int64_t i = 0; i < supports.count(); ++i)
       fixed[supports.where(i)] = static_cast<std::uint8_t>(static_cast<int>(*supports.row(i)) & 0x3f);
+   const auto driven = scene.channel("driven", 2);
+   for (std::int64_t i = 0; i < driven.count(); ++i)
+      if (const double freedom = driven.row(i)[0]; freedom >= 0 && freedom <= 5)
+         fixed[driven.where(i)] |= static_cast<std::uint8_t>(1 << static_cast<int>(freedom));
    for (std::int64_t i = 0; i < cells; ++i)
       for (int k = 0; k < 3; ++k) {
          inverseMass[k][i] = (fixed[i] >> k & 1) ? 0 : 1 / mass[i];

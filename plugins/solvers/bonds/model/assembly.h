@@ -45,14 +45,14 @@ struct Assembly
    // Cells.
    std::array<Column, 3> rest;           // m
    Column mass;                          // kg
-   std::array<Column, 3> inverseMass;    // 0 where held
+   std::array<Column, 3> inverseMass;    // 0 where held or driven
    std::array<Column, 3> inverseInertia; // world axes for cubes, 0 where held; smallest of the box otherwise
-   std::vector<std::uint8_t> fixed;
-   Column halfHeight;                // m, centre to lower face at rest
-   bool boxes = false;               // some cell is no cube: its inertia turns with it
-   std::array<Column, 3> boxInertia; // principal, in the cell's own axes; for all cells when `boxes`
-   std::vector<Quat> orientation;    // own axes to world at rest; likewise
-   Column inertia;                   // of cubes
+   std::vector<std::uint8_t> fixed;      // degrees of freedom, bit by bit, that forces do not move
+   Column halfHeight;                    // m, centre to lower face at rest
+   bool boxes = false;                   // some cell is no cube: its inertia turns with it
+   std::array<Column, 3> boxInertia;     // principal, in the cell's own axes; for all cells when `boxes`
+   std::vector<Quat> orientation;        // own axes to world at rest; likewise
+   Column inertia;                       // of cubes
 
    // Bonds: first those along x, then y, z, then any other direction. a to b points along the positive axis.
    std::array<std::int64_t, 5> group{};

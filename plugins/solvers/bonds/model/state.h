@@ -70,20 +70,39 @@ inline Vec3 spinMomentum(const Assembly &assembly, std::int64_t i, Quat turn, Ve
                      assembly.boxInertia[2][i] * v.z};
 }
 
-inline Vec3 spinFrom(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 momentum)
+/// Spin of a box cell from its angular momentum; where it is held, the spin stays `held`.
+inline Vec3 spinFrom(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 momentum, Vec3 held)
 {
    const Mat3 own = matrix(turn * assembly.orientation[i]);
    const Vec3 v = transposed(own, momentum);
    Vec3 w = own * Vec3{v.x / assembly.boxInertia[0][i], v.y / assembly.boxInertia[1][i],
                        v.z / assembly.boxInertia[2][i]};
-   const int held = assembly.fixed[i] >> 3;
-   if (held & 1)
-      w.x = 0;
-   if (held & 2)
-      w.y = 0;
-   if (held & 4)
-      w.z = 0;
+   const int mask = assembly.fixed[i] >> 3;
+   if (mask & 1)
+      w.x = held.x;
+   if (mask & 2)
+      w.y = held.y;
+   if (mask & 4)
+      w.z = held.z;
    return w;
+}
+
+/// Changes the velocities of a cell by what a force and a torque do in `dt`.
+inline void kickCell(const Assembly &assembly, std::int64_t i, double dt, Vec3 force, Vec3 torque,
+                     State &state)
+{
+   state.velocity(0)[i] += dt * assembly.inverseMass[0][i] * force.x;
+   state.velocity(1)[i] += dt * assembly.inverseMass[1][i] * force.y;
+   state.velocity(2)[i] += dt * assembly.inverseMass[2][i] * force.z;
+   if (assembly.boxes) {
+      const Quat q = state.turnOf(i);
+      const Vec3 w = state.spinOf(i);
+      state.setSpin(i, spinFrom(assembly, i, q, spinMomentum(assembly, i, q, w) + dt * torque, w));
+      return;
+   }
+   state.spin(0)[i] += dt * assembly.inverseInertia[0][i] * torque.x;
+   state.spin(1)[i] += dt * assembly.inverseInertia[1][i] * torque.y;
+   state.spin(2)[i] += dt * assembly.inverseInertia[2][i] * torque.z;
 }
 
 } // namespace bonds
