@@ -182,7 +182,7 @@ Status OnGround::incline(std::size_t number)
    // The case leaves the ground's stiffness open. Until the grip of the ground is drawn as far as friction
    // holds, friction is less than its limit, and a cell let go of gains sqrt(g mass g / stiffness) or so:
    // little on a stiff one.
-   const double stiffness = 1e8, damping = 0.3 * std::sqrt(stiffness * m_mass);
+   const double stiffness = 1e9, damping = 0.3 * std::sqrt(stiffness * m_mass);
    const double sunk = -m_mass * gravity.z() / stiffness, time = incline.at("T"),
                 mu = m_content.at("slide").at("mu");
    CaseScene scene = cell(-sunk, stiffness, damping, mu);

@@ -85,6 +85,8 @@ void SolverBondsEquilibriumSupportsTest::fullyDrivenCellsArePlacedWhereverTheyAr
    for (int cell = 0; cell < 2; ++cell) {
       for (int k = 0; k < 3; ++k)
          drive(scene, cell, k, place[cell][k]);
+      drive(scene, cell, 3, 0);
+      drive(scene, cell, 4, 0);
       drive(scene, cell, 5, cell == 0 ? turn : -other);
    }
    Run run(scene);
