@@ -62,6 +62,14 @@ void AccuracyPanelTest::aNewcomerReadsWhatAccuracyCosts()
    studio.key(Qt::Key_Z, Qt::ControlModifier);
    QCOMPARE(studio.hash(), before);
    QVERIFY(!studio.window.findChild<QAbstractButton *>("preset.Fine")->isChecked());
+
+   // Three times the limit: said before the run.
+   QVERIFY(studio.openPanel(kSettings));
+   studio.type("setting.step", QString::number(3e6 * probe.limit.stableStep) + " us");
+   QVERIFY(studio.beside("setting.step").startsWith("Longer than the longest stable step"));
+   QCOMPARE(studio.table().text("now", "error"), QString("unknown"));
+   QCOMPARE(studio.table().text("now", "seconds"), QString("unknown"));
+   QVERIFY(!studio.plot().ringed());
 }
 
 void AccuracyPanelTest::anEditWhileProbingBeginsAnew()

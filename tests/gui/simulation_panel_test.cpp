@@ -81,7 +81,7 @@ private slots:
       QVERIFY(!studio.view().highlight().empty());
       QVERIFY(studio.settle());
       QVERIFY(studio.picture() != plain);
-      studio.press("effect.damping.cells");
+      QTest::mouseClick(studio.window.findChild<QLabel *>("effect.damping.why"), Qt::LeftButton); // the row
       QVERIFY(studio.view().highlight().empty());
       QVERIFY(studio.settle());
       QVERIFY(studio.picture() == plain);
