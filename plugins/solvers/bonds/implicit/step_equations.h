@@ -31,7 +31,7 @@ public:
    /// Negative derivative of the residual by displacement and spin, changes of frame within a step left out.
    void tangent(const sdk::Call &call, const Vector &increment, const Kinematics &to, BlockMatrix &out);
 
-   const Motion &from() const { return *m_from; }
+   const Kinematics &from() const { return *m_from; }
    double step() const { return m_step; }
    /// Of the last residual: power of damping (W), what bonds and couplings exert, what they and the loads
    /// exert together, what the ground exerts.
