@@ -236,8 +236,8 @@ void SolveTest::theSolverOfOursFindsAChainsModes()
    QVERIFY2(run.exit == 0, run.err.constData());
    const QJsonArray hertz = run.object()["hertz"].toArray();
    QCOMPARE(hertz.size(), 14);
-   // Along its axis the bar is a chain of 4 masses, held at one end: 2 sqrt(k / m) sin((2 j - 1) pi / 18) with
-   // k = E l = 1000 N/m and m = 1 mg. The file's numbers and the solver's are good to 1e-10.
+   // Along its axis the bar is a chain of 4 masses, held at one end: 2 sqrt(k / m) sin((2 j - 1) pi / 18)
+   // with k = E l = 1000 N/m and m = 1 mg. The file's numbers and the solver's are good to 1e-10.
    for (int j = 1; j <= 2; ++j) {
       const double exact = std::sqrt(1000 / 1e-6) * std::sin((2 * j - 1) * M_PI / 18) / M_PI;
       double nearest = 0;

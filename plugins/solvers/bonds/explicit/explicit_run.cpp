@@ -168,8 +168,11 @@ bool ExplicitRun::diverged()
 void ExplicitRun::reportDivergence(const sdk::Call &call, double time, double step,
                                    diatom_step_result &result)
 {
-   const std::int64_t cell = brokenCell(m_assembly, m_motion->state());
-   const std::int64_t bond = worstBond(m_assembly, m_motion->state(), m_motion->rest());
+   // Beyond the limit the culprit is what sets it; which bond looks worst 64 steps later is chance.
+   const bool beyond = step > m_stable.step * (1 + 1e-9);
+   const std::int64_t cell = beyond ? m_stable.cell : brokenCell(m_assembly, m_motion->state());
+   const std::int64_t bond =
+       beyond ? m_stable.bond : worstBond(m_assembly, m_motion->state(), m_motion->rest());
    result.state = DIATOM_DIVERGED;
    result.bad_cell = cell;
    result.bad_link = bond < 0 ? -1 : m_assembly.link[bond];

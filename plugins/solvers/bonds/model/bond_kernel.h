@@ -1,6 +1,6 @@
-// Force and torques of one bond: the exact gradient of U = 1/2 d.K d + 1/2 phi.C phi in the middle frame, or for
-// a stepped beam in one nearer to the stiffer end, for any rotation, with damping that acts on strain rates
-// only. Everything is in bond axes: x along the bond at rest.
+// Force and torques of one bond: the exact gradient of U = 1/2 d.K d + 1/2 phi.C phi in the middle frame, or
+// for a stepped beam in one nearer to the stiffer end, for any rotation, with damping that acts on strain
+// rates only. Everything is in bond axes: x along the bond at rest.
 #pragma once
 
 #include "model/vector.h"
@@ -12,8 +12,8 @@ namespace bonds {
 /// middle one turned back by `turn` = s / length of the relative turn (Step, below).
 struct BondConstants
 {
-   double k[3]{}; // axial, shear y, shear z
-   double c[3]{}; // torsion, bending about y, bending about z
+   double k[3]{};            // axial, shear y, shear z
+   double c[3]{};            // torsion, bending about y, bending about z
    double s[2]{}, turn[2]{}; // m; parts, zero where a beam is the same at both ends
    double d[3]{}, e[3]{};
 };
@@ -82,10 +82,10 @@ inline Relation relate(const Ends &ends)
    return r;
 }
 
-/// The turn Q from vectors in the middle frame to those in the frame of a stepped beam. To first order it adds
-/// s[0] phi_z and -s[1] phi_y to the transverse strains; being a turn, it leaves the length of a bond that only
-/// bends as it is, where the sums alone would stretch it by half the square of s phi / length. The turn is
-/// Cayley's of the vector, which differs from the exponential by a twelfth of its cube.
+/// The turn Q from vectors in the middle frame to those in the frame of a stepped beam. To first order it
+/// adds s[0] phi_z and -s[1] phi_y to the transverse strains; being a turn, it leaves the length of a bond
+/// that only bends as it is, where the sums alone would stretch it by half the square of s phi / length. The
+/// turn is Cayley's of the vector, which differs from the exponential by a twelfth of its cube.
 struct Step
 {
    Vec3 a;       // half the turn's vector

@@ -79,8 +79,8 @@ inline BondPoint bondGeometry(const BondEnds &ends)
 /// S c with S = s I + p v v^T.
 inline Vec3 turned(const BondPoint &r, Vec3 c) { return r.s * c + (r.p * dot(r.v, c)) * r.v; }
 
-/// Strain of the separation in the bond's own frame; `phi` and `stretch` are relative to the actuated rest. Its
-/// digits are those of `stretch`.
+/// Strain of the separation in the bond's own frame; `phi` and `stretch` are relative to the actuated rest.
+/// Its digits are those of `stretch`.
 inline Vec3 ownStrain(const BondPoint &r, const BondConstants &k, Vec3 phi, Vec3 stretch)
 {
    return stretch + Step(k, phi).change(r.u);
