@@ -80,7 +80,6 @@ void AccuracyPanelTest::anEditWhileProbingBeginsAnew()
    QVERIFY(studio.openPanel(kAccuracy));
    StallWatch watch;
    QVERIFY(QTest::qWaitFor([&] { return studio.panel().accuracy().busy(); }));
-   QTest::qWait(700); // past the idle time: the probe itself is going on
    QVERIFY(!studio.panel().accuracy().probe());
    const auto cells = studio.cells();
    studio.view().setFocus();

@@ -36,9 +36,6 @@ inline Design everything()
    a.dampingRatio = 0.17;
    a.bonds =
        BondConstants{{1, 2, 3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-6, 2e-6, 3e-6}, {4e-6, 5e-6, 6e-6}};
-   a.dampings =
-       BondConstants{{0.1, 0.2, 0.3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-9, 0, 3e-9}, {4e-9, 5e-9, 0}};
-   a.inertia = {1.5e-13, 2e-13, 2.5e-13};
    b.ports = 0x30;
    c.actuation = {Actuation::Mode::shear, 2, 0.6, true};
    for (auto &m : {a, gone, b, c})

@@ -54,6 +54,24 @@ private slots:
       }
    }
 
+   void dampingsAndInertiaOfOnesOwnSurviveBothForms()
+   {
+      Design design = everything();
+      auto materials = std::make_shared<std::vector<Material>>(*design.model.materials);
+      Material &one = materials->front();
+      one.dampings = BondConstants{
+          {0.1, 0.2, 0.3}, {{{0, 1, 2}, {3, 0, 5}, {6, 7, 0}}}, {1e-9, 0, 3e-9}, {4e-9, 5e-9, 0}};
+      one.inertia = {1.5e-13, 2e-13, 2.5e-13};
+      const Hash before = design.hash();
+      design.model.materials = materials;
+      QVERIFY(design.hash() != before);
+      for (const bool packed : {false, true}) {
+         const auto opened = read(*writeDesign(design, packed, Job()));
+         DIATOM_VERIFY_OK(opened);
+         QVERIFY(opened->design == design);
+      }
+   }
+
    void theLengthOfARunIsWrittenWhereItIsGiven()
    {
       Design design = boundary();

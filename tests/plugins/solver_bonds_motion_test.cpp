@@ -154,10 +154,11 @@ void SolverBondsMotionTest::undampedEnergyDoesNotDrift_data()
    QTest::addColumn<double>("fraction"); // of the stable step
    QTest::addColumn<double>("bound");
    // Symplectic steps oscillate by about (w dt / 2) resp. (w dt)^2 / 8 of each mode but do not drift: the
-   // bounds are on means over many periods. Runge-Kutta loses (w dt)^6 / 72 a step.
+   // bounds are on means over many periods. Runge-Kutta loses (w dt)^6 / 72 a step, 9e-3 of the energy of the
+   // fastest mode here, which has a part of all.
    QTest::newRow("semi-implicit") << "semi_implicit" << 0.1 << 5e-3;
    QTest::newRow("verlet") << "verlet" << 0.1 << 5e-4;
-   QTest::newRow("rk4") << "rk4" << 0.05 << 1e-3;
+   QTest::newRow("rk4") << "rk4" << 0.05 << 3e-3;
 }
 
 /// A free bar that is thrown about until it folds (relative turns beyond a radian): mean energy of the first
