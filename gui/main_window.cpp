@@ -57,7 +57,11 @@ MainWindow::MainWindow(std::shared_ptr<const Catalogue> catalogue, QSettings *se
    m_viewport->setFocus();
 }
 
-MainWindow::~MainWindow() { m_player.disconnect(); }
+MainWindow::~MainWindow()
+{
+   m_player.disconnect();
+   hide(); // while what the panels' and docks' signals lead to is still there
+}
 
 void MainWindow::on(std::string_view action, std::function<void()> act)
 {
