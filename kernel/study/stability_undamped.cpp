@@ -30,13 +30,11 @@ void checkEnergy(const Course &course, double ofLimit, double secular, Stability
 
 void checkMomentum(const Course &course, StabilityRow &row)
 {
-   // Sums of so many rounded forces, each at most 2^-53 of the largest, add up as a random walk.
-   const double rounding =
-       1e-15 * std::sqrt(static_cast<double>(course.steps)) * std::sqrt(static_cast<double>(course.cells));
-   row.checks.push_back(
-       {"change of linear momentum", course.linear, 10 * rounding, "rounding of the forces"});
-   row.checks.push_back({"change of angular momentum", course.angular, 100 * rounding,
-                         "rounding of forces times distances; second order in the step where it is drift"});
+   // Rounding by 2^-53 of each cell in each step, adding up as a random walk.
+   const double rounding = 0x1p-53 * std::sqrt(static_cast<double>(course.steps * course.cells));
+   const char *why = "2^-53 a cell and step, as a random walk";
+   row.checks.push_back({"change of linear momentum", course.linear, rounding, why});
+   row.checks.push_back({"change of angular momentum", course.angular, rounding, why});
 }
 
 struct Undamped
