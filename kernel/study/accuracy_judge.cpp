@@ -205,7 +205,12 @@ void Judge::markFront(AccuracyStudy &study) const
          order.push_back(static_cast<int>(k));
    const auto at = [&](int k) -> AccuracyRow & { return study.rows[static_cast<std::size_t>(k)]; };
    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return at(a).seconds < at(b).seconds; });
-   const double doubt = study.reference.disagreement.value_or(0);
+   // A run cannot be told nearer to the truth than what it is held against.
+   const AccuracyReference &held = study.reference;
+   const double doubt =
+       held.exact
+           ? 0
+           : held.ownError.value_or(held.disagreement.value_or(std::numeric_limits<double>::infinity()));
    double best = std::numeric_limits<double>::infinity();
    for (const int k : order) {
       if (study.cheapest < 0 && *at(k).error + doubt <= study.tolerance)

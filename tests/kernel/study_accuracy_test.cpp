@@ -100,6 +100,10 @@ void StudyAccuracyTest::aWalkersStrideIsHeldAgainstItsFinestRunAndTellsWhatIsSur
    QVERIFY(std::abs(study->reference.value) > 1e-4); // it walks a tenth of a cell at the very least
    if (!study->reference.asymptotic)
       QVERIFY(!study->reference.doubt.empty());
+   // No run is recommended that is not surer than what it is held against: the finest one is held against
+   // itself and would always win.
+   if (study->cheapest >= 0)
+      QVERIFY(study->reference.ownError && *study->reference.ownError <= study->tolerance);
 }
 
 void StudyAccuracyTest::aQuantityOfNoCellIsRefused()
