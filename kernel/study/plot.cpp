@@ -218,6 +218,13 @@ private:
       return kFirst + static_cast<int>(k % (kColors.size() - static_cast<std::size_t>(kFirst)));
    }
 
+   /// Where colours begin anew, symbols move on by one, so that no two series look alike.
+   static const char *symbolOf(std::size_t k)
+   {
+      const std::size_t colors = kColors.size() - static_cast<std::size_t>(kFirst);
+      return kSymbols[(k + k / colors) % kSymbols.size()];
+   }
+
    void series(std::size_t k) const
    {
       const Series &one = m_chart.series[k];
@@ -228,8 +235,7 @@ private:
          polyline(line);
       plschr(0, 0.75);
       if (!line.x.empty())
-         plstring(static_cast<PLINT>(line.x.size()), line.x.data(), line.y.data(),
-                  kSymbols[k % kSymbols.size()]);
+         plstring(static_cast<PLINT>(line.x.size()), line.x.data(), line.y.data(), symbolOf(k));
       plschr(0, 0.55);
       for (std::size_t i = 0; i < line.x.size(); ++i)
          text(line.x[i] + 0.012 * (m_x.high - m_x.low), line.y[i] + 0.02 * (m_y.high - m_y.low), 0,
@@ -275,8 +281,7 @@ private:
          y -= 0.042;
       };
       for (std::size_t k = 0; k < m_chart.series.size(); ++k)
-         entry(colorOf(k), 1.5, m_chart.series[k].joined, kSymbols[k % kSymbols.size()],
-               m_chart.series[k].name);
+         entry(colorOf(k), 1.5, m_chart.series[k].joined, symbolOf(k), m_chart.series[k].name);
       if (!m_chart.front.empty())
          entry(kFront, 7, true, nullptr, m_chart.frontName);
    }
