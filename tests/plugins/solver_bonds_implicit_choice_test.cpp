@@ -34,6 +34,7 @@ private slots:
    void aFallingCubeComesToRestOnTheGround();
    void frictionSticksOrSlidesAsCoulombSays();
    void effortIsTold();
+   void singlePrecisionIsRefused();
 };
 
 /// Against the exact swing: after 5 swings the error, mostly of phase, is within 2 pi 5 times the tolerance
@@ -172,6 +173,16 @@ void SolverBondsImplicitChoiceTest::effortIsTold()
    QVERIFY(effort[1] >= 100 && effort[1] == double(run.result.iterations));
    QCOMPARE(effort[2], 1.0); // a linear scene and one step length: factorised once
    QVERIFY(std::abs(effort[4] / 1e-5 - 1) < 1e-9 && std::abs(effort[5] / 1e-5 - 1) < 1e-9);
+}
+
+void SolverBondsImplicitChoiceTest::singlePrecisionIsRefused()
+{
+   HandScene scene = Oscillator().scene();
+   SolverChoice choice = implicit(0.2);
+   choice.precision = "f32";
+   Run run(scene, choice);
+   QCOMPARE(run.status, DIATOM_UNSUPPORTED);
+   QVERIFY2(run.host.said.find("f64") != std::string::npos, run.host.said.c_str());
 }
 
 QTEST_APPLESS_MAIN(SolverBondsImplicitChoiceTest)

@@ -70,6 +70,9 @@ ImplicitRun::ImplicitRun(const Options &options, const sdk::Values &values, cons
 {
    if (!options.exact)
       throw Failure(DIATOM_UNSUPPORTED, "implicit steps need the exact gradient: leave gradient at exact");
+   if (options.precision == Options::Precision::f32)
+      throw Failure(DIATOM_UNSUPPORTED,
+                    "there is no single precision for implicit steps: choose the precision f64");
    const auto e = m_motion.energy();
    m_start = e[0] + e[1] + e[2] + e[3];
    const Assembly &assembly = m_balance.assembly();
