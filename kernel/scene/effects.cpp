@@ -64,7 +64,8 @@ Verdict lookRotation(const Look &look)
    if (look.hierarchy.cells() < 2)
       return {false, "a single cell has no bond that could turn", {}};
    return {true,
-           "large rotations: bonded cells may turn by any angle; switched off, turns are taken as small",
+           "bonded cells may turn by any angle; the law is exact for all of them and costs the same for "
+           "small ones, so that switching it off saves nothing",
            cellsWhere(look, [](Cell) { return true; })};
 }
 
