@@ -1,6 +1,7 @@
 // diatom circuit: nets, sources and driven actuators of a design, what is wrong with them, and voltages over
 // time.
 #include "cli/commands.h"
+#include "cli/number_checks.h"
 #include "cli/scene_json.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -110,8 +111,8 @@ void addCircuit(CLI::App &app, Context &context)
    command
        ->add_option("--until", options->until,
                     "Also write the voltage of every net until this time, s, as CSV")
-       ->check(CLI::PositiveNumber);
-   command->add_option("--every", options->every, "Interval of the voltages, s")->check(CLI::PositiveNumber);
+       ->check(kPositive);
+   command->add_option("--every", options->every, "Interval of the voltages, s")->check(kPositive);
    command->add_option("-o,--output", options->output, "File for the voltages, - for standard output");
    command->footer("Examples:\n  diatom circuit gripper.diatom --json\n"
                    "  diatom circuit gripper.diatom --until 0.1 --every 0.001 -o voltages.csv");

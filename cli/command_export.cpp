@@ -1,5 +1,6 @@
 // diatom export: a design as STL, of cells or of parts, whole or by material.
 #include "cli/commands.h"
+#include "cli/number_checks.h"
 
 #include "io/stl.h"
 
@@ -134,7 +135,7 @@ void addExport(CLI::App &app, Context &context)
    command->add_option("--parts", arguments->parts,
                        "Which parts, when several fit the lattice: see diatom parts");
    command->add_option("--detail", arguments->detail, "Mesh detail of parts, 0 coarse; the finest by default")
-       ->check(CLI::NonNegativeNumber);
+       ->check(kNonNegative);
    command->add_flag("--ascii", arguments->ascii, "ASCII instead of binary STL");
    command->add_option("--unit", arguments->unit, "Length of one STL unit")
        ->check(CLI::IsMember(unitNames()))

@@ -1,5 +1,6 @@
 // diatom modes: the lowest vibrations of a design about its static balance.
 #include "cli/commands.h"
+#include "cli/number_checks.h"
 #include "cli/run_options.h"
 #include "cli/scene_json.h"
 #include "core/text.h"
@@ -145,7 +146,7 @@ void addModes(CLI::App &app, Context &context)
    command
        ->add_option("--at", options->at,
                     "Time at which curves and signals are taken, s (default: the end of the longest curve)")
-       ->check(CLI::NonNegativeNumber);
+       ->check(kNonNegative);
    command->add_option("--shapes", options->shapes,
                        "Write the shapes as CSV: a row for each cell of each mode");
    command->footer(

@@ -1,5 +1,6 @@
 // diatom render: a picture of a design, at rest or at a moment of its simulation, without any display.
 #include "cli/commands.h"
+#include "cli/number_checks.h"
 #include "cli/picture.h"
 #include "core/text.h"
 #include "scene/simulation.h"
@@ -111,8 +112,7 @@ void addRender(CLI::App &app, Context &context)
    command->add_option("--view", options->view, "Direction to look from")
        ->check(CLI::IsMember({"iso", "front", "back", "left", "right", "top", "bottom"}))
        ->capture_default_str();
-   command->add_option("--at-time", options->atTime, "Seconds to simulate first")
-       ->check(CLI::NonNegativeNumber);
+   command->add_option("--at-time", options->atTime, "Seconds to simulate first")->check(kNonNegative);
    command->add_option("--colour,--color", options->colour, "What colours mean; displacement draws a legend")
        ->check(CLI::IsMember({"material", "displacement"}))
        ->capture_default_str();

@@ -1,6 +1,7 @@
 // diatom simulate: motion in time, with a record, probes and an account of the energy.
 #include "cli/accuracy_option.h"
 #include "cli/commands.h"
+#include "cli/number_checks.h"
 #include "cli/run_options.h"
 #include "cli/scene_json.h"
 #include "core/text.h"
@@ -231,9 +232,7 @@ void addSimulate(CLI::App &app, Context &context)
    CLI::App *command =
        app.add_subcommand("simulate", "Simulate motion in time; prints energies, effects and probes");
    addRunOptions(*command, options->run);
-   command->add_option("--until", options->until, "Time to simulate, s")
-       ->required()
-       ->check(CLI::PositiveNumber);
+   command->add_option("--until", options->until, "Time to simulate, s")->required()->check(kPositive);
    command->add_option("--integrator", options->integrator,
                        "The solver's integrator, e.g. semi_implicit, verlet, rk4, implicit");
    command->add_option("--precision", options->precision, "The solver's numbers: f64 or f32");
@@ -248,11 +247,11 @@ void addSimulate(CLI::App &app, Context &context)
    command
        ->add_option("--probe-budget", options->probeBudget,
                     "Wall time, s, that --accuracy may spend on each setting it considers")
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
    command->add_flag("--force-step", options->force, "Accept a step beyond the stable limit");
    command->add_option("--drag", options->drag, "Slow all motion, 1/s: settles a design to rest")
-       ->check(CLI::NonNegativeNumber);
-   command->add_option("--every", options->every, "Interval of the record, s")->check(CLI::PositiveNumber);
+       ->check(kNonNegative);
+   command->add_option("--every", options->every, "Interval of the record, s")->check(kPositive);
    command->footer("Examples:\n  diatom simulate beam.diatom --until 0.5 --record out.csv --probe 0,13,0:z\n"
                    "  diatom simulate beam.diatom --until 0.5 --probe 0,13,0:z --accuracy 1%\n"
                    "  diatom simulate gripper.json --until 0.2 --step auto --effects=-gravity --json");

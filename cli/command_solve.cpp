@@ -1,6 +1,7 @@
 // diatom solve: the static balance of a design, what its supports supply, and how far it gave way.
 #include "cli/commands.h"
 #include "cli/deformed_stl.h"
+#include "cli/number_checks.h"
 #include "cli/run_options.h"
 #include "cli/scene_json.h"
 #include "scene/balance.h"
@@ -256,17 +257,17 @@ void addSolve(CLI::App &app, Context &context)
    command
        ->add_option("--at", options->at,
                     "Time at which curves and signals are taken, s (default: the end of the longest curve)")
-       ->check(CLI::NonNegativeNumber);
+       ->check(kNonNegative);
    command->add_option("--load-steps", options->loadSteps, "Raise loads in so many steps; 0 = as few as work")
-       ->check(CLI::NonNegativeNumber);
+       ->check(kNonNegative);
    command
        ->add_option("--tolerance", options->tolerance,
                     "Unbalanced force over the largest force at work that is small enough (default 1e-8)")
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
    command
        ->add_option("--every", options->every,
                     "Also find the balances before, at this interval, s: for --record")
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
    command->add_option("--stl", options->stl, "Write the deformed surface as STL, in mm");
    command->add_option("--scale", options->scale, "Exaggerate displacements in the STL by this factor");
    command->footer("Examples:\n  diatom solve beam.diatom --probe 0,13,0:z\n"

@@ -1,6 +1,7 @@
 // diatom study accuracy: error and time over settings, steps and resolutions, as a table, JSON and plots.
 #include "cli/accuracy_option.h"
 #include "cli/command_study.h"
+#include "cli/number_checks.h"
 #include "cli/scene_json.h"
 #include "core/text.h"
 #include "study/accuracy_report.h"
@@ -166,17 +167,16 @@ void addStudyAccuracy(CLI::App &study, Context &context)
                        "X,Y,Z:CHANNEL, with @SECONDS, @rest or @frequency; default: the design's reference, "
                        "else the cell that moves most, over the whole run");
    command->add_option("--until", request.until, "Time to simulate, s; default: out and back once")
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
    command->add_option("--tolerance", options->tolerance, "Accuracy asked for, as 1% or 0.01");
-   command->add_option("--budget", request.budget, "Wall time the study may take, s")
-       ->check(CLI::PositiveNumber);
+   command->add_option("--budget", request.budget, "Wall time the study may take, s")->check(kPositive);
    command->add_option("--repeats", request.repeats, "Timings of each setting; their median counts")
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
    command
        ->add_option("--resolution", request.resolutions,
                     "Cells along an edge that each cell is cut into, as 1,2,3")
        ->delimiter(',')
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
    command->add_option("--set", options->settings, "Change PATH=VALUE for this study, e.g. drag=40; repeats")
        ->allow_extra_args(false);
    command->footer(

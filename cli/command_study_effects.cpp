@@ -1,5 +1,6 @@
 // diatom study effects: what each effect costs in a step, and that an absent one costs nothing.
 #include "cli/command_study.h"
+#include "cli/number_checks.h"
 #include "cli/scene_json.h"
 #include "core/file.h"
 #include "study/effects_study.h"
@@ -89,9 +90,8 @@ void addStudyEffects(CLI::App &study, Context &context)
                        "lack one effect each");
    command->add_option("-o,--output", options->folder, "Folder for effects.csv and effects.json");
    command->add_option("--turns", options->request.turns, "Timings of each scene, in turns")
-       ->check(CLI::PositiveNumber);
-   command->add_option("--turn-seconds", options->request.turnSeconds, "Length of each, s")
-       ->check(CLI::PositiveNumber);
+       ->check(kPositive);
+   command->add_option("--turn-seconds", options->request.turnSeconds, "Length of each, s")->check(kPositive);
    command->footer("Examples:\n  diatom study effects -o out\n  diatom study effects walker.diatom");
    command->callback([options, &context] { run(*options, context); });
 }

@@ -1,5 +1,6 @@
 // diatom: the headless program. Its commands are the table below; the words they share are in cli.h.
 #include "cli/commands.h"
+#include "cli/number_checks.h"
 
 #include <CLI/CLI.hpp>
 
@@ -24,7 +25,7 @@ int main(int argc, char **argv)
    app.fallthrough(); // common options may also follow the sub-command
    app.add_flag("--json", context.json, "Print one JSON value on standard output");
    app.add_option("--threads", context.threads, "Threads to use; 0 = all. Results do not depend on it")
-       ->check(CLI::NonNegativeNumber);
+       ->check(kNonNegative);
    app.add_option("--progress", context.progress, "Progress on standard error")
        ->check(CLI::IsMember({"auto", "line", "json", "none"}));
    app.add_option("--plugins", context.pluginFolders, "Folder to look for plugins in, before the usual ones");

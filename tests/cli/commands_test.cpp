@@ -70,6 +70,11 @@ void CommandsTest::misuseExitsWithTwo()
    QCOMPARE(diatomRuns({"dance"}).exit, 2);
    QCOMPARE(diatomRuns({"info"}).exit, 2);
    QCOMPARE(diatomRuns({"simulate", sample("gripper.diatom")}).exit, 2); // until when?
+   for (const char *never : {"nan", "inf", "-1", "0"}) {
+      const Outcome refused = diatomRuns({"simulate", sample("gripper.diatom"), "--until", never});
+      QCOMPARE(refused.exit, 2);
+      QVERIFY2(refused.err.contains("is not a number above 0"), refused.err.constData());
+   }
    QCOMPARE(diatomRuns({"export", sample("gripper.diatom"), file("x.docx")}).exit, 2);
 }
 
