@@ -61,7 +61,10 @@ void EffectEntry::setEffect(const Effect &effect, std::optional<bool> forced, st
    m_state->setStyleSheet(effect.on ? QStringLiteral("background: #1e6e50; color: white; border-radius: 4px;")
                                     : QStringLiteral("border: 1px solid palette(mid); border-radius: 4px;"));
    m_why->setText(QString::fromStdString(effect.why));
-   m_cost->setText(cost ? tr("cost %1 ns").arg(figureText(*cost)) : tr("cost unknown"));
+   // Less than nothing is noise of the measurement.
+   m_cost->setText(!cost       ? tr("cost unknown")
+                   : *cost > 0 ? tr("cost %1 ns").arg(figureText(*cost))
+                               : tr("cost too small to measure"));
    m_switch->setCurrentIndex(!forced ? 0 : *forced ? 1 : 2);
    m_evidence = effect.evidence;
    m_cells->setVisible(!m_evidence.empty());
