@@ -18,6 +18,9 @@ namespace {
 constexpr std::array<std::pair<const char *, double>, 6> kUnits = {
     {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"in", 25.4e-3}}};
 
+/// Cells up to which contacts are counted: a surface that takes a second and some 100 MB.
+constexpr std::uint64_t kMostCounted = 1'000'000;
+
 struct ExportArguments
 {
    std::string file, out, as = "cells", material, unit = "mm", parts;
@@ -70,6 +73,10 @@ nlohmann::ordered_json reportOf(const std::vector<StlReport> &reports, const Exp
       file["cells"] = report.cells;
       if (arguments.as == "parts")
          file["parts"] = report.parts;
+      if (report.edgeContacts)
+         file["edge_contacts"] = *report.edgeContacts;
+      if (report.vertexContacts)
+         file["vertex_contacts"] = *report.vertexContacts;
       files.push_back(std::move(file));
    }
    return {{"as", arguments.as}, {"unit", arguments.unit}, {"files", std::move(files)}};
@@ -79,9 +86,10 @@ Result<std::vector<StlReport>> write(const ExportArguments &arguments, const Con
                                      Context &context)
 {
    const Model &model = input.hierarchy->model();
-   const auto options = optionsOf(arguments, model);
+   auto options = optionsOf(arguments, model);
    if (!options)
       return options.error();
+   options->contacts = input.hierarchy->cells() <= kMostCounted;
    std::shared_ptr<const PartMaker> maker;
    if (options->what == StlOptions::What::parts) {
       auto made = PartMaker::make(*context.catalogue(), arguments.parts, {}, model.lattice.id, context.job());
