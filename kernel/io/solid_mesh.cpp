@@ -8,7 +8,14 @@
 
 namespace diatom {
 
-std::size_t PointNumbers::Hash::operator()(const std::array<double, 3> &point) const
+namespace {
+
+/// Half-edges are numbered with 32 bits.
+constexpr std::size_t kMostTriangles = std::numeric_limits<std::uint32_t>::max() / 3;
+
+} // namespace
+
+std::size_t SolidBuilder::Hash::operator()(const std::array<double, 3> &point) const
 {
    std::uint64_t hash = 0;
    for (const double number : point) {
@@ -18,50 +25,50 @@ std::size_t PointNumbers::Hash::operator()(const std::array<double, 3> &point) c
    return hash;
 }
 
-std::uint32_t PointNumbers::number(const Vec3 &point)
+std::uint32_t SolidBuilder::number(const Vec3 &point)
 {
    // 0 and -0 are one place.
    const std::array<double, 3> key{point.x() + 0.0, point.y() + 0.0, point.z() + 0.0};
-   const auto [found, added] = m_numbers.emplace(key, static_cast<std::uint32_t>(m_points.size()));
+   const auto [found, added] = m_numbers.emplace(key, static_cast<std::uint32_t>(m_mesh.vertices.size()));
    if (added)
-      m_points.push_back(point);
+      m_mesh.vertices.push_back(point);
    return found->second;
 }
 
-Result<SolidMesh> cellSolid(const Hierarchy &hierarchy, std::optional<MaterialIndex> material, const Job &job,
-                            const std::function<Vec3(const Vec3 &)> &moved)
+void SolidBuilder::face(std::span<const Vec3> corners, MaterialIndex material)
 {
-   SolidMesh mesh;
-   PointNumbers numbers(mesh.vertices);
-   std::vector<std::uint32_t> ring;
-   constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 3;
-   bool tooMany = false;
-   const Status seen = visitSurface(
-       hierarchy, material, false,
-       [&](const SurfaceFace &face) {
-          tooMany = tooMany || mesh.triangles.size() + face.corners.size() > kMost;
-          if (tooMany)
-             return;
-          ring.clear();
-          for (const Vec3 &corner : face.corners)
-             ring.push_back(numbers.number(corner));
-          for (std::size_t i = 2; i < ring.size(); ++i) {
-             mesh.triangles.push_back({ring[0], ring[i - 1], ring[i]});
-             mesh.materials.push_back(face.material);
-          }
-       },
-       job);
-   if (!seen)
-      return seen.error();
-   if (tooMany)
+   m_tooMany = m_tooMany || m_mesh.triangles.size() + corners.size() > kMostTriangles;
+   if (m_tooMany)
+      return;
+   m_ring.clear();
+   for (const Vec3 &corner : corners)
+      m_ring.push_back(number(corner));
+   for (std::size_t i = 2; i < m_ring.size(); ++i) {
+      m_mesh.triangles.push_back({m_ring[0], m_ring[i - 1], m_ring[i]});
+      m_mesh.materials.push_back(material);
+   }
+}
+
+Result<SolidMesh> SolidBuilder::finish()
+{
+   m_numbers.clear();
+   if (m_tooMany)
       return Error{ErrorCode::invalid, "the surface has more triangles than a mesh with indices can count; "
                                        "export it by material, in pieces or as STL"};
-   if (const Status split = splitContacts(mesh); !split)
+   if (const Status split = splitContacts(m_mesh); !split)
       return split.error();
-   if (moved)
-      for (Vec3 &vertex : mesh.vertices)
-         vertex = moved(vertex);
-   return mesh;
+   return std::move(m_mesh);
+}
+
+Result<SolidMesh> cellSolid(const Hierarchy &hierarchy, std::optional<MaterialIndex> material, const Job &job)
+{
+   SolidBuilder builder;
+   const Status seen = visitSurface(
+       hierarchy, material, false,
+       [&](const SurfaceFace &face) { builder.face(face.corners, face.material); }, job);
+   if (!seen)
+      return seen.error();
+   return builder.finish();
 }
 
 double volumeOf(const SolidMesh &mesh)

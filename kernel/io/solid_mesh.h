@@ -8,8 +8,8 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
@@ -26,25 +26,32 @@ struct SolidMesh
    std::uint64_t edgeContacts = 0, vertexContacts = 0;
 };
 
-/// Numbers points by their exact doubles, in the order they come.
-class PointNumbers
+/// Collects faces and makes them one solid.
+class SolidBuilder
 {
 public:
-   explicit PointNumbers(std::vector<Vec3> &points) : m_points(points) {}
-   std::uint32_t number(const Vec3 &point);
+   /// A convex face, counter-clockwise from outside. Corners with the very same doubles are one vertex.
+   void face(std::span<const Vec3> corners, MaterialIndex material);
+   bool empty() const { return m_mesh.triangles.empty(); }
+   /// Splits contacts. Refuses more triangles than indices can count, and a surface that is not closed.
+   Result<SolidMesh> finish();
 
 private:
    struct Hash
    {
       std::size_t operator()(const std::array<double, 3> &point) const;
    };
-   std::vector<Vec3> &m_points;
+   std::uint32_t number(const Vec3 &point);
+
+   SolidMesh m_mesh;
    std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> m_numbers;
+   std::vector<std::uint32_t> m_ring;
+   bool m_tooMany = false;
 };
 
-/// The outside of all cells as one solid, or of those of one material. Refuses more than an index can count.
-Result<SolidMesh> cellSolid(const Hierarchy &hierarchy, std::optional<MaterialIndex> material, const Job &job,
-                            const std::function<Vec3(const Vec3 &)> &moved = {});
+/// The outside of all cells as one solid, or of those of one material.
+Result<SolidMesh> cellSolid(const Hierarchy &hierarchy, std::optional<MaterialIndex> material,
+                            const Job &job);
 
 /// Volume by the divergence theorem, m3.
 double volumeOf(const SolidMesh &mesh);
