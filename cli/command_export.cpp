@@ -1,7 +1,8 @@
-// diatom export: the geometry of a design, of cells or of parts, whole or by material.
+// diatom export: the geometry of a design, of cells, parts or struts, whole or by material.
 #include "cli/commands.h"
 #include "cli/number_checks.h"
 
+#include "core/text.h"
 #include "io/geometry_file.h"
 #include "io/stl.h"
 
@@ -27,6 +28,9 @@ struct ExportArguments
    std::string file, out, as = "cells", material, unit, parts, format, solids = "material";
    bool eachMaterial = false, ascii = false;
    int detail = -1;
+   std::string strutWidth, section = "round";
+   std::optional<int> sides;
+   bool connections = false, overlapping = false, beams = false;
 };
 
 std::vector<std::string> unitNames()
@@ -43,6 +47,18 @@ double metresOf(const std::string &unit)
       if (unit == name)
          return metres;
    return 1;
+}
+
+/// A positive length with a unit, or in `unit` without; in metres.
+std::optional<double> lengthOf(const std::string &text, const std::string &unit)
+{
+   const auto digits = text.find_last_of("0123456789.") + 1;
+   const std::string suffix = digits < text.size() ? text.substr(digits) : unit;
+   const auto number = parseNumber(text.substr(0, digits));
+   for (const auto &[name, metres] : kUnits)
+      if (suffix == name && number && *number > 0)
+         return *number * metres;
+   return {};
 }
 
 /// 0 for all of them.
@@ -68,6 +84,19 @@ std::string conflict(const ExportArguments &arguments, GeometryFormat format)
       return "--ascii is for STL only; leave it out";
    if (arguments.solids == "one" && arguments.eachMaterial)
       return "--solids one and --each-material contradict each other; give one of them";
+   const bool struts = arguments.as == "struts";
+   const bool shaped = !arguments.strutWidth.empty() || arguments.sides || arguments.section != "round";
+   if (!struts && (shaped || arguments.connections || arguments.overlapping || arguments.beams))
+      return "--strut-..., --connections, --overlapping and --beams are for --as struts; add that";
+   if (arguments.beams && format != GeometryFormat::threeMf)
+      return "only 3MF knows beams; choose a .3mf file or leave --beams out";
+   if (arguments.beams && (arguments.section != "round" || arguments.sides || arguments.overlapping))
+      return "beams are round and without a surface; leave --strut-section, --strut-sides and --overlapping "
+             "out";
+   if (struts && arguments.ascii)
+      return "struts are written as binary STL; leave --ascii out";
+   if (arguments.section == "square" && arguments.sides)
+      return "--strut-sides is for round struts; leave it or --strut-section out";
    return {};
 }
 
@@ -98,7 +127,7 @@ public:
             return made.error();
          m_maker = *std::move(made);
       }
-      auto files = m_format == GeometryFormat::stl ? streamed() : indexed();
+      auto files = m_format == GeometryFormat::stl && m_arguments.as != "struts" ? streamed() : indexed();
       if (!files)
          return files.error();
       return Json{{"as", m_arguments.as}, {"unit", m_unitName}, {"files", *std::move(files)}};
@@ -175,13 +204,37 @@ private:
       return files;
    }
 
+   Result<StrutOptions> strutOptions() const
+   {
+      StrutOptions options;
+      options.connections = m_arguments.connections;
+      options.overlapping = m_arguments.overlapping;
+      options.beams = m_arguments.beams;
+      options.sides = m_arguments.section == "square" ? 4 : m_arguments.sides.value_or(options.sides);
+      if (!m_arguments.strutWidth.empty()) {
+         const auto width = lengthOf(m_arguments.strutWidth, m_unitName);
+         if (!width)
+            return Error{ErrorCode::usage,
+                         fmt::format("--strut-width {}: give a positive length, as 0.4 or 0.4mm",
+                                     m_arguments.strutWidth)};
+         options.width = *width;
+      }
+      return options;
+   }
+
    Result<Json> indexedFile(const std::filesystem::path &path, std::optional<MaterialIndex> material)
    {
       GeometryOptions options;
-      options.what = m_arguments.as == "parts" ? GeometryOptions::What::parts : GeometryOptions::What::cells;
+      options.what = m_arguments.as == "parts"    ? GeometryOptions::What::parts
+                     : m_arguments.as == "struts" ? GeometryOptions::What::struts
+                                                  : GeometryOptions::What::cells;
       options.material = material;
       options.detail = m_arguments.detail;
-      options.apart = m_arguments.solids == "material";
+      options.apart = m_arguments.solids == "material" && m_format != GeometryFormat::stl;
+      const auto struts = strutOptions();
+      if (!struts)
+         return struts.error();
+      options.struts = *struts;
       const auto geometry = makeGeometry(m_hierarchy, m_maker.get(), options, m_context.job());
       if (!geometry)
          return geometry.error();
@@ -191,12 +244,19 @@ private:
       Json file{{"file", path.string()}};
       if (material)
          file["material"] = idOf(*material);
-      file["solids"] = geometry->solids.size();
+      file["solids"] = geometry->solids.size() + geometry->beams.size();
       file["triangles"] = geometry->triangles();
       file["bytes"] = *bytes;
       file["cells"] = geometry->cells;
       if (m_arguments.as == "parts")
          file["parts"] = geometry->parts;
+      if (m_arguments.as == "struts") {
+         file["struts"] = geometry->struts.struts;
+         file["nodes"] = geometry->struts.nodes;
+         file["strut_width"] = geometry->struts.width / unit();
+         if (geometry->struts.widest > 0)
+            file["widest"] = geometry->struts.widest / unit();
+      }
       file["edge_contacts"] = geometry->edgeContacts();
       file["vertex_contacts"] = geometry->vertexContacts();
       return file;
@@ -252,8 +312,10 @@ void addExport(CLI::App &app, Context &context)
    command
        ->add_option("OUT", arguments->out, "The file, its format told by the suffix; - for standard output")
        ->required();
-   command->add_option("--as", arguments->as, "Cells as their polyhedra, or the parts that are really made")
-       ->check(CLI::IsMember({"cells", "parts"}))
+   command
+       ->add_option("--as", arguments->as,
+                    "Cells as their polyhedra, the parts that are really made, or the edges as struts")
+       ->check(CLI::IsMember({"cells", "parts", "struts"}))
        ->capture_default_str();
    auto *material = command->add_option("--material", arguments->material, "Only the material of this id");
    command->add_flag("--each-material", arguments->eachMaterial, "One file per material: OUT.MATERIAL.stl")
@@ -272,6 +334,20 @@ void addExport(CLI::App &app, Context &context)
    command->add_flag("--ascii", arguments->ascii, "ASCII instead of binary STL");
    command->add_option("--unit", arguments->unit, "Length of one unit; mm by default, glTF always has m")
        ->check(CLI::IsMember(unitNames()));
+   command->add_option("--strut-width", arguments->strutWidth,
+                       "Diameter or side of struts, as 0.4mm; chosen for the design by default");
+   command->add_option("--strut-section", arguments->section, "Of struts")
+       ->check(CLI::IsMember({"round", "square"}))
+       ->capture_default_str();
+   command
+       ->add_option("--strut-sides", arguments->sides, "Flat sides of a round strut, 3 to 64; 8 by default")
+       ->check(CLI::Range(3, 64));
+   command->add_flag("--connections", arguments->connections,
+                     "Struts from centre to centre of joined cells instead of edges");
+   command->add_flag("--overlapping", arguments->overlapping,
+                     "Struts as shells that overlap at nodes: quick, at any width");
+   command->add_flag("--beams", arguments->beams,
+                     "In 3MF: struts by their axes (the beam lattice extension)");
    command->callback([arguments, &context] { run(*arguments, context); });
 }
 

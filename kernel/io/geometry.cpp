@@ -102,6 +102,71 @@ Result<Solids> solidsOfParts(const Hierarchy &hierarchy, const PartMaker &maker,
    return solids;
 }
 
+/// A set of beams for each material, with the nodes they end at.
+std::vector<BeamSet> beamsOf(const StrutGraph &graph, const GeometryOptions &options,
+                             const Geometry &geometry)
+{
+   std::map<MaterialIndex, BeamSet> sets;
+   std::map<std::pair<MaterialIndex, std::uint32_t>, std::uint32_t> numbers;
+   for (const Strut &strut : graph.struts) {
+      if (options.material && strut.material != *options.material)
+         continue;
+      BeamSet &set = sets[strut.material];
+      std::array<std::uint32_t, 2> beam{strut.a, strut.b};
+      for (std::uint32_t &node : beam) {
+         const auto [found, added] =
+             numbers.emplace(std::pair(strut.material, node), static_cast<std::uint32_t>(set.nodes.size()));
+         if (added)
+            set.nodes.push_back(graph.nodes[node]);
+         node = found->second;
+      }
+      set.beams.push_back(beam);
+   }
+   std::vector<BeamSet> all;
+   for (auto &[material, set] : sets) {
+      set.name = nameOf(geometry.material(material));
+      set.material = material;
+      all.push_back(std::move(set));
+   }
+   return all;
+}
+
+Result<Solids> solidsOfStruts(const Hierarchy &hierarchy, const GeometryOptions &options, Geometry &geometry,
+                              const Job &job)
+{
+   const auto graph = strutGraph(hierarchy, options.struts.connections, job);
+   if (!graph)
+      return graph.error();
+   if (options.struts.beams) {
+      const auto facts = strutFacts(*graph, options.struts, job);
+      if (!facts)
+         return facts.error();
+      geometry.struts = *facts;
+      geometry.beams = beamsOf(*graph, options, geometry);
+      return Solids{};
+   }
+   auto solids = strutSolids(*graph, options.struts, options.apart || options.material.has_value(),
+                             geometry.struts, job);
+   if (solids && options.material)
+      for (auto at = solids->begin(); at != solids->end();)
+         at = at->first == *options.material ? std::next(at) : solids->erase(at);
+   return solids;
+}
+
+Result<Solids> solidsOf(const Hierarchy &hierarchy, const PartMaker *maker, const GeometryOptions &options,
+                        Geometry &geometry, const Job &job)
+{
+   switch (options.what) {
+   case GeometryOptions::What::cells:
+      return solidsOfCells(hierarchy, options, job);
+   case GeometryOptions::What::parts:
+      return solidsOfParts(hierarchy, *maker, options, geometry, job);
+   case GeometryOptions::What::struts:
+      break;
+   }
+   return solidsOfStruts(hierarchy, options, geometry, job);
+}
+
 Status checkOptions(const PartMaker *maker, const GeometryOptions &options)
 {
    if (options.what != GeometryOptions::What::parts)
@@ -147,12 +212,10 @@ Result<Geometry> makeGeometry(const Hierarchy &hierarchy, const PartMaker *maker
       return status.error();
    Geometry geometry;
    geometry.materials = *hierarchy.model().materials;
-   auto solids = options.what == GeometryOptions::What::cells
-                     ? solidsOfCells(hierarchy, options, job)
-                     : solidsOfParts(hierarchy, *maker, options, geometry, job);
+   auto solids = solidsOf(hierarchy, maker, options, geometry, job);
    if (!solids)
       return solids.error();
-   if (options.what == GeometryOptions::What::cells) {
+   if (options.what != GeometryOptions::What::parts) {
       const auto counts = hierarchy.countByMaterial();
       for (std::size_t material = 1; material < counts.size(); ++material)
          if (!options.material || *options.material == material)

@@ -70,7 +70,9 @@ Result<std::uint64_t> writeGeometry(const Geometry &geometry, GeometryFormat for
 {
    if (!(unit > 0) || !std::isfinite(unit))
       return Error{ErrorCode::usage, "the unit of a file must be a positive length"};
-   if (geometry.solids.empty())
+   if (!geometry.beams.empty() && format != GeometryFormat::threeMf)
+      return Error{ErrorCode::usage, "only 3MF knows beams; choose a .3mf file or leave --beams out"};
+   if (geometry.solids.empty() && geometry.beams.empty())
       return Error{ErrorCode::invalid,
                    fmt::format("{}: there is nothing to write; the design has no cells of "
                                "the kind asked for",

@@ -3,7 +3,6 @@
 #include "io/split_contacts.h"
 #include "io/surface.h"
 
-#include <bit>
 #include <limits>
 
 namespace diatom {
@@ -15,26 +14,6 @@ constexpr std::size_t kMostTriangles = std::numeric_limits<std::uint32_t>::max()
 
 } // namespace
 
-std::size_t SolidBuilder::Hash::operator()(const std::array<double, 3> &point) const
-{
-   std::uint64_t hash = 0;
-   for (const double number : point) {
-      hash = (hash ^ std::bit_cast<std::uint64_t>(number)) * 0x9e37'79b9'7f4a'7c15u;
-      hash ^= hash >> 29;
-   }
-   return hash;
-}
-
-std::uint32_t SolidBuilder::number(const Vec3 &point)
-{
-   // 0 and -0 are one place.
-   const std::array<double, 3> key{point.x() + 0.0, point.y() + 0.0, point.z() + 0.0};
-   const auto [found, added] = m_numbers.emplace(key, static_cast<std::uint32_t>(m_mesh.vertices.size()));
-   if (added)
-      m_mesh.vertices.push_back(point);
-   return found->second;
-}
-
 void SolidBuilder::face(std::span<const Vec3> corners, MaterialIndex material)
 {
    m_tooMany = m_tooMany || m_mesh.triangles.size() + corners.size() > kMostTriangles;
@@ -42,7 +21,7 @@ void SolidBuilder::face(std::span<const Vec3> corners, MaterialIndex material)
       return;
    m_ring.clear();
    for (const Vec3 &corner : corners)
-      m_ring.push_back(number(corner));
+      m_ring.push_back(m_numbers.number(corner, m_mesh.vertices));
    for (std::size_t i = 2; i < m_ring.size(); ++i) {
       m_mesh.triangles.push_back({m_ring[0], m_ring[i - 1], m_ring[i]});
       m_mesh.materials.push_back(material);

@@ -5,12 +5,12 @@
 #include "core/job.h"
 #include "core/result.h"
 #include "core/vec.h"
+#include "io/point_numbers.h"
 
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 namespace diatom {
@@ -37,14 +37,8 @@ public:
    Result<SolidMesh> finish();
 
 private:
-   struct Hash
-   {
-      std::size_t operator()(const std::array<double, 3> &point) const;
-   };
-   std::uint32_t number(const Vec3 &point);
-
    SolidMesh m_mesh;
-   std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> m_numbers;
+   PointNumbers m_numbers;
    std::vector<std::uint32_t> m_ring;
    bool m_tooMany = false;
 };

@@ -1,4 +1,5 @@
-// 3MF core specification 1.3: a zip with one XML model, base materials, one object for each solid.
+// 3MF core specification 1.3: a zip with one XML model, base materials, one object for each solid or set of
+// beams (beam lattice extension 1.0).
 #include "core/archive.h"
 #include "core/file.h"
 #include "core/text.h"
@@ -6,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace diatom {
@@ -26,6 +28,9 @@ constexpr const char *kRelations =
     R"(<?xml version="1.0" encoding="UTF-8"?>
 <Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships"><Relationship Target="/3D/3dmodel.model" Id="rel0" Type="http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"/></Relationships>
 )";
+
+constexpr const char *kBeams =
+    " xmlns:b=\"http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02\" requiredextensions=\"b\"";
 
 std::string escaped(const std::string &text)
 {
@@ -50,9 +55,9 @@ public:
    {
       m_text = fmt::format(
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{}\" xml:lang=\"en-US\" "
-          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">\n"
+          "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"{}>\n"
           "<metadata name=\"Application\">Diatom</metadata>\n<resources>\n<basematerials id=\"1\">\n",
-          unitName);
+          unitName, geometry.beams.empty() ? "" : kBeams);
       for (const Material &material : geometry.materials) {
          m_places.push_back(m_placed);
          if (material.id.empty())
@@ -68,13 +73,8 @@ public:
    Status add(const Solid &solid, const Job &job)
    {
       const MaterialIndex all = solid.material ? solid.material : solid.mesh.materials[0];
-      m_text += fmt::format(
-          "<object id=\"{}\" type=\"model\" name=\"{}\" pid=\"1\" pindex=\"{}\"><mesh>\n<vertices>\n",
-          kFirstObject + m_objects++, escaped(solid.name), place(all));
-      for (const Vec3 &vertex : solid.mesh.vertices)
-         m_text += "<vertex x=\"" + number(vertex.x()) + "\" y=\"" + number(vertex.y()) + "\" z=\"" +
-                   number(vertex.z()) + "\"/>\n";
-      m_text += "</vertices>\n<triangles>\n";
+      open(solid.name, all, solid.mesh.vertices);
+      m_text += "<triangles>\n";
       for (std::size_t t = 0; t < solid.mesh.triangles.size(); ++t) {
          if (t % 65536 == 0) {
             if (job.cancelled())
@@ -93,6 +93,20 @@ public:
       return {};
    }
 
+   void add(const BeamSet &set)
+   {
+      double shortest = (set.nodes[set.beams[0][0]] - set.nodes[set.beams[0][1]]).norm();
+      for (const auto &[a, b] : set.beams)
+         shortest = std::min(shortest, (set.nodes[a] - set.nodes[b]).norm());
+      open(set.name, set.material, set.nodes);
+      // Readers may leave out beams shorter than "minlength": all of these are longer.
+      m_text += "<triangles/>\n<b:beamlattice radius=\"" + number(m_geometry.struts.width / 2) +
+                "\" minlength=\"" + number(shortest / 1000) + "\" cap=\"sphere\"><b:beams>\n";
+      for (const auto &[a, b] : set.beams)
+         m_text += "<b:beam v1=\"" + std::to_string(a) + "\" v2=\"" + std::to_string(b) + "\"/>\n";
+      m_text += "</b:beams></b:beamlattice>\n</mesh></object>\n";
+   }
+
    std::string finish()
    {
       m_text += "</resources>\n<build>\n";
@@ -103,6 +117,18 @@ public:
 
 private:
    static constexpr int kFirstObject = 2;
+
+   /// The head of an object with its vertices.
+   void open(const std::string &name, MaterialIndex material, const std::vector<Vec3> &vertices)
+   {
+      m_text += fmt::format(
+          "<object id=\"{}\" type=\"model\" name=\"{}\" pid=\"1\" pindex=\"{}\"><mesh>\n<vertices>\n",
+          kFirstObject + m_objects++, escaped(name), place(material));
+      for (const Vec3 &vertex : vertices)
+         m_text += "<vertex x=\"" + number(vertex.x()) + "\" y=\"" + number(vertex.y()) + "\" z=\"" +
+                   number(vertex.z()) + "\"/>\n";
+      m_text += "</vertices>\n";
+   }
    int place(MaterialIndex material) const { return m_places[material - std::size_t{1}]; }
    std::string number(double metres) const { return singleText(static_cast<float>(metres / m_unit)); }
 
@@ -130,6 +156,8 @@ Written write3mf(const Geometry &geometry, double unit, const std::filesystem::p
    for (const Solid &solid : geometry.solids)
       if (const Status added = model.add(solid, job); !added)
          return added.error();
+   for (const BeamSet &set : geometry.beams)
+      model.add(set);
    job.progress(1, "packing");
    Entries entries{{"[Content_Types].xml", kTypes}, {"_rels/.rels", kRelations}};
    entries["3D/3dmodel.model"] = model.finish();
