@@ -1,6 +1,7 @@
 #include "io/strut_graph.h"
 
 #include "io/point_numbers.h"
+#include "io/strut_crossings.h"
 #include "io/surface_tables.h"
 
 #include <algorithm>
@@ -36,7 +37,7 @@ public:
          if (overlaps && m_hierarchy.at(i).material != cell.material)
             return true;
          m_connections ? connect(i, cell.material) : edges(i, cell.material);
-         return m_graph.nodes.size() < kMost && m_graph.struts.size() < kMost;
+         return m_graph.nodes.size() < kMost && m_lines.size() < kMost;
       });
       if (m_job.cancelled())
          return Error{ErrorCode::cancelled, "the export was cancelled"};
@@ -44,11 +45,9 @@ public:
          return Error{ErrorCode::invalid,
                       "the design has more struts than a mesh with indices can count; export "
                       "it in pieces"};
-      m_graph.at.resize(m_graph.nodes.size());
-      for (std::uint32_t s = 0; s < m_graph.struts.size(); ++s) {
-         m_graph.at[m_graph.struts[s].a].push_back(s);
-         m_graph.at[m_graph.struts[s].b].push_back(s);
-      }
+      finish();
+      if (m_job.cancelled())
+         return Error{ErrorCode::cancelled, "the export was cancelled"};
       return std::move(m_graph);
    }
 
@@ -80,21 +79,31 @@ private:
       std::uint32_t b = m_numbers.number(to, m_graph.nodes);
       if (b < a)
          std::swap(a, b);
-      const auto [found, added] = m_known.emplace(std::uint64_t{a} << 32 | b, m_graph.struts.size());
-      if (!added) {
-         MaterialIndex &known = m_graph.struts[found->second].material;
-         known = std::min(known, material);
-         return;
+      const auto [found, added] = m_known.emplace(std::uint64_t{a} << 32 | b, m_lines.size());
+      if (added)
+         m_lines.push_back({a, b, material});
+      else
+         m_lines[found->second].material = std::min(m_lines[found->second].material, material);
+   }
+
+   void finish()
+   {
+      for (const StrutLine &line : cutAtCrossings(m_lines, m_graph.nodes, m_job)) {
+         Vec3 along = (m_graph.nodes[line.b] - m_graph.nodes[line.a]).normalized();
+         constexpr double kSmall = 1e-6;
+         int first = 0;
+         while (first < 2 && std::abs(along[first]) < kSmall)
+            ++first;
+         const bool reversed = along[first] < 0;
+         if (reversed)
+            along = -along;
+         m_graph.struts.push_back({line.a, line.b, axis(along), reversed, line.material});
       }
-      Vec3 along = (m_graph.nodes[b] - m_graph.nodes[a]).normalized();
-      constexpr double kSmall = 1e-6;
-      int first = 0;
-      while (first < 2 && std::abs(along[first]) < kSmall)
-         ++first;
-      const bool reversed = along[first] < 0;
-      if (reversed)
-         along = -along;
-      m_graph.struts.push_back({a, b, axis(along), reversed, material});
+      m_graph.at.resize(m_graph.nodes.size());
+      for (std::uint32_t s = 0; s < m_graph.struts.size(); ++s) {
+         m_graph.at[m_graph.struts[s].a].push_back(s);
+         m_graph.at[m_graph.struts[s].b].push_back(s);
+      }
    }
 
    /// Directions that differ by rounding only are one.
@@ -119,6 +128,7 @@ private:
    SurfaceTables m_tables;
    bool m_connections;
    const Job &m_job;
+   std::vector<StrutLine> m_lines;
    StrutGraph m_graph;
    PointNumbers m_numbers;
    std::unordered_map<std::uint64_t, std::size_t> m_known;

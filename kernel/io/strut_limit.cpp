@@ -1,12 +1,12 @@
 #include "io/strut_limit.h"
 
 #include "io/node_hull.h"
+#include "io/place_grid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
-#include <unordered_map>
+#include <unordered_set>
 
 namespace diatom {
 
@@ -53,9 +53,9 @@ public:
       }
       for (std::uint32_t n = 0; n < graph.nodes.size(); ++n)
          m_items.push_back({graph.nodes[n], Vec3::Zero(), std::hypot(setBacks[n], 1.0), n, n});
-      m_size = 2 * longest;
+      m_grid = PlaceGrid(2 * longest);
       for (std::uint32_t i = 0; i < m_items.size(); ++i)
-         m_cells[cellOf(m_items[i])].push_back(i);
+         m_grid.add(middle(m_items[i]), i);
    }
 
    std::size_t items() const { return m_items.size(); }
@@ -64,54 +64,31 @@ public:
    void lower(std::uint32_t i, StrutLimit &limit) const
    {
       const Item &item = m_items[i];
-      const auto cell = cellOf(item);
-      for (int k = 0; k < 27; ++k) {
-         const auto found = m_cells.find({cell[0] + k % 3 - 1, cell[1] + k / 3 % 3 - 1, cell[2] + k / 9 - 1});
-         if (found == m_cells.end())
-            continue;
-         for (const std::uint32_t j : found->second) {
-            const Item &other = m_items[j];
-            if (j >= i || item.a == other.a || item.a == other.b || item.b == other.a || item.b == other.b ||
-                (item.a == item.b && other.a == other.b && m_connected.count(key(item.a, other.a))))
-               continue;
-            const double thick = item.thick + other.thick;
-            const double apart = (item.from + item.along / 2 - other.from - other.along / 2).norm();
-            if (apart - (item.along.norm() + other.along.norm()) / 2 > thick * limit.radius)
-               continue;
-            const double most = segmentDistance(item.from, item.along, other.from, other.along) / thick;
-            if (most < limit.radius)
-               limit = {most, item.from + item.along / 2, true};
-         }
-      }
+      m_grid.near(middle(item), [&](std::uint32_t j) {
+         const Item &other = m_items[j];
+         if (j >= i || item.a == other.a || item.a == other.b || item.b == other.a || item.b == other.b ||
+             (item.a == item.b && other.a == other.b && m_connected.count(key(item.a, other.a))))
+            return;
+         const double thick = item.thick + other.thick;
+         const double apart = (middle(item) - middle(other)).norm();
+         if (apart - (item.along.norm() + other.along.norm()) / 2 > thick * limit.radius)
+            return;
+         const double most = segmentDistance(item.from, item.along, other.from, other.along) / thick;
+         if (most < limit.radius)
+            limit = {most, middle(item), true};
+      });
    }
 
 private:
-   using Cell = std::array<long long, 3>;
-   struct Hash
-   {
-      std::size_t operator()(const Cell &cell) const
-      {
-         std::uint64_t hash = 0;
-         for (const long long k : cell)
-            hash = (hash ^ static_cast<std::uint64_t>(k)) * 0x9e37'79b9'7f4a'7c15u, hash ^= hash >> 31;
-         return hash;
-      }
-   };
+   static Vec3 middle(const Item &item) { return item.from + item.along / 2; }
    static std::uint64_t key(std::uint32_t a, std::uint32_t b)
    {
       return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
    }
-   Cell cellOf(const Item &item) const
-   {
-      const Vec3 middle = (item.from + item.along / 2) / m_size;
-      return {std::llround(middle.x()), std::llround(middle.y()), std::llround(middle.z())};
-   }
-
    const StrutGraph &m_graph;
    std::vector<Item> m_items;
-   std::set<std::uint64_t> m_connected;
-   std::unordered_map<Cell, std::vector<std::uint32_t>, Hash> m_cells;
-   double m_size = 0;
+   std::unordered_set<std::uint64_t> m_connected;
+   PlaceGrid m_grid{1};
 };
 
 } // namespace

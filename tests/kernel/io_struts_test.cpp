@@ -2,6 +2,7 @@
 // lattice, by material, and refused where they do not fit.
 #include "io/geometry_file.h"
 #include "io/node_hull.h"
+#include "io/strut_crossings.h"
 #include "io/strut_limit.h"
 #include "support/mesh.h"
 #include "support/process.h"
@@ -138,6 +139,7 @@ private slots:
    void anEdgeBelongsToTheSmallestMaterial();
    void tooThickStrutsAreRefusedWithTheWidestThatFits();
    void crossingStrutsAreRefused();
+   void crossingAndOverlappingLinesShareNodes();
    void overlappingShellsAreEachClosed();
    void beamsPassTheStrictReader();
    void theSameDesignGivesTheSameStruts();
@@ -336,6 +338,24 @@ void StrutsTest::crossingStrutsAreRefused()
       options.width = 0.29;
       QCOMPARE(strutFacts(graph, options, Job()).ok(), gap > 0);
    }
+}
+
+void StrutsTest::crossingAndOverlappingLinesShareNodes()
+{
+   // A cross with its arms' halves, a line on part of another, and one that ends within another.
+   std::vector<Vec3> nodes{{-1, 0, 0},  {1, 0, 0}, {0, -1, 0},   {0, 1, 0},
+                           {0.5, 0, 0}, {3, 0, 0}, {-0.5, 0, 0}, {-0.5, 0, 1}};
+   const auto pieces = cutAtCrossings({{0, 1, 3}, {2, 3, 2}, {4, 5, 1}, {6, 7, 2}}, nodes, Job());
+   QCOMPARE(nodes.size(), std::size_t(9)); // the crossing
+   QVERIFY(nodes[8].norm() < 1e-12);
+   std::map<std::pair<std::uint32_t, std::uint32_t>, MaterialIndex> got;
+   for (const StrutLine &piece : pieces)
+      got[{piece.a, piece.b}] = piece.material;
+   const std::map<std::pair<std::uint32_t, std::uint32_t>, MaterialIndex> wanted{
+       {{0, 6}, 3}, {{6, 8}, 3}, {{4, 8}, 3}, {{1, 4}, 1},
+       {{2, 8}, 2}, {{3, 8}, 2}, {{1, 5}, 1}, {{6, 7}, 2}};
+   QCOMPARE(pieces.size(), wanted.size());
+   QVERIFY(got == wanted);
 }
 
 void StrutsTest::overlappingShellsAreEachClosed()
