@@ -1,7 +1,9 @@
-// diatom export: a design as STL, of cells or of parts, whole or by material.
+// diatom export: the geometry of a design, of cells, parts or struts, whole or by material.
 #include "cli/commands.h"
 #include "cli/number_checks.h"
 
+#include "core/text.h"
+#include "io/geometry_file.h"
 #include "io/stl.h"
 
 #include <CLI/CLI.hpp>
@@ -18,11 +20,17 @@ namespace {
 constexpr std::array<std::pair<const char *, double>, 6> kUnits = {
     {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"in", 25.4e-3}}};
 
+/// Cells up to which contacts of an STL export are counted: a surface that takes a second and some 100 MB.
+constexpr std::uint64_t kMostCounted = 1'000'000;
+
 struct ExportArguments
 {
-   std::string file, out, as = "cells", material, unit = "mm", parts;
+   std::string file, out, as = "cells", material, unit, parts, format, solids = "material";
    bool eachMaterial = false, ascii = false;
    int detail = -1;
+   std::string strutWidth, section = "round";
+   std::optional<int> sides;
+   bool connections = false, overlapping = false, beams = false;
 };
 
 std::vector<std::string> unitNames()
@@ -33,89 +41,265 @@ std::vector<std::string> unitNames()
    return names;
 }
 
-Result<StlOptions> optionsOf(const ExportArguments &arguments, const Model &model)
+double metresOf(const std::string &unit)
 {
-   StlOptions options;
-   options.what = arguments.as == "parts" ? StlOptions::What::parts : StlOptions::What::cells;
-   options.ascii = arguments.ascii;
-   options.detail = arguments.detail;
    for (const auto &[name, metres] : kUnits)
-      if (arguments.unit == name)
-         options.unit = metres;
+      if (unit == name)
+         return metres;
+   return 1;
+}
+
+/// A positive length with a unit, or in `unit` without; in metres.
+std::optional<double> lengthOf(const std::string &text, const std::string &unit)
+{
+   const auto digits = text.find_last_of("0123456789.") + 1;
+   const std::string suffix = digits < text.size() ? text.substr(digits) : unit;
+   const auto number = parseNumber(text.substr(0, digits));
+   for (const auto &[name, metres] : kUnits)
+      if (suffix == name && number && *number > 0)
+         return *number * metres;
+   return {};
+}
+
+/// 0 for all of them.
+Result<MaterialIndex> materialOf(const ExportArguments &arguments, const Model &model)
+{
    if (arguments.material.empty())
-      return options;
+      return MaterialIndex{0};
    const MaterialIndex material = model.material(arguments.material);
-   if (material == 0) {
-      std::string known;
-      for (const Material &each : *model.materials)
-         if (!each.id.empty())
-            known += (known.empty() ? "" : ", ") + each.id;
-      return Error{ErrorCode::usage, fmt::format("{} has no material \"{}\"; it has {}", arguments.file,
-                                                 arguments.material, known.empty() ? "none" : known)};
-   }
-   options.material = material;
-   return options;
+   if (material != 0)
+      return material;
+   std::string known;
+   for (const Material &each : *model.materials)
+      if (!each.id.empty())
+         known += (known.empty() ? "" : ", ") + each.id;
+   return Error{ErrorCode::usage, fmt::format("{} has no material \"{}\"; it has {}", arguments.file,
+                                              arguments.material, known.empty() ? "none" : known)};
 }
 
-nlohmann::ordered_json reportOf(const std::vector<StlReport> &reports, const ExportArguments &arguments,
-                                const Model &model)
+/// Why the arguments do not go together; empty when they do.
+std::string conflict(const ExportArguments &arguments, GeometryFormat format)
 {
-   auto files = nlohmann::ordered_json::array();
-   for (const StlReport &report : reports) {
-      nlohmann::ordered_json file{{"file", report.file.string()}};
-      if (report.material)
-         file["material"] = model.material(*report.material).id;
-      file["triangles"] = report.triangles;
-      file["bytes"] = report.bytes;
-      file["cells"] = report.cells;
-      if (arguments.as == "parts")
-         file["parts"] = report.parts;
-      files.push_back(std::move(file));
-   }
-   return {{"as", arguments.as}, {"unit", arguments.unit}, {"files", std::move(files)}};
+   if (arguments.ascii && format != GeometryFormat::stl)
+      return "--ascii is for STL only; leave it out";
+   if (arguments.solids == "one" && arguments.eachMaterial)
+      return "--solids one and --each-material contradict each other; give one of them";
+   const bool struts = arguments.as == "struts";
+   const bool shaped = !arguments.strutWidth.empty() || arguments.sides || arguments.section != "round";
+   if (!struts && (shaped || arguments.connections || arguments.overlapping || arguments.beams))
+      return "--strut-..., --connections, --overlapping and --beams are for --as struts; add that";
+   if (arguments.beams && format != GeometryFormat::threeMf)
+      return "only 3MF knows beams; choose a .3mf file or leave --beams out";
+   if (arguments.beams && (arguments.section != "round" || arguments.sides || arguments.overlapping))
+      return "beams are round and without a surface; leave --strut-section, --strut-sides and --overlapping "
+             "out";
+   if (struts && arguments.ascii)
+      return "struts are written as binary STL; leave --ascii out";
+   if (arguments.section == "square" && arguments.sides)
+      return "--strut-sides is for round struts; leave it or --strut-section out";
+   return {};
 }
 
-Result<std::vector<StlReport>> write(const ExportArguments &arguments, const Context::Input &input,
-                                     Context &context)
+using Json = nlohmann::ordered_json;
+
+/// One export with all that it needs.
+class Export
 {
-   const Model &model = input.hierarchy->model();
-   const auto options = optionsOf(arguments, model);
-   if (!options)
-      return options.error();
-   std::shared_ptr<const PartMaker> maker;
-   if (options->what == StlOptions::What::parts) {
-      auto made = PartMaker::make(*context.catalogue(), arguments.parts, {}, model.lattice.id, context.job());
-      if (!made)
-         return made.error();
-      maker = *std::move(made);
+public:
+   Export(const ExportArguments &arguments, GeometryFormat format, const Context::Input &input,
+          Context &context)
+       : m_arguments(arguments), m_format(format), m_hierarchy(*input.hierarchy), m_context(context)
+   {
+      m_unitName = !arguments.unit.empty() ? arguments.unit : isGltf() ? "m" : "mm";
    }
-   if (arguments.eachMaterial)
-      return writeStlByMaterial(*input.hierarchy, maker.get(), *options, arguments.out, context.job());
-   auto report = writeStl(*input.hierarchy, maker.get(), *options, arguments.out, context.job());
-   if (!report)
-      return report.error();
-   return std::vector<StlReport>{*std::move(report)};
+
+   Result<Json> run()
+   {
+      const auto material = materialOf(m_arguments, m_hierarchy.model());
+      if (!material)
+         return material.error();
+      if (*material != 0)
+         m_material = *material;
+      if (m_arguments.as == "parts") {
+         auto made = PartMaker::make(*m_context.catalogue(), m_arguments.parts, {},
+                                     m_hierarchy.model().lattice.id, m_context.job());
+         if (!made)
+            return made.error();
+         m_maker = *std::move(made);
+      }
+      auto files = m_format == GeometryFormat::stl && m_arguments.as != "struts" ? streamed() : indexed();
+      if (!files)
+         return files.error();
+      return Json{{"as", m_arguments.as}, {"unit", m_unitName}, {"files", *std::move(files)}};
+   }
+
+private:
+   bool isGltf() const { return m_format == GeometryFormat::gltf || m_format == GeometryFormat::glb; }
+   double unit() const { return metresOf(m_unitName); }
+   std::string idOf(MaterialIndex material) const { return m_hierarchy.model().material(material).id; }
+
+   Result<Json> streamed()
+   {
+      StlOptions options;
+      options.what = m_arguments.as == "parts" ? StlOptions::What::parts : StlOptions::What::cells;
+      options.material = m_material;
+      options.ascii = m_arguments.ascii;
+      options.detail = m_arguments.detail;
+      options.unit = unit();
+      options.contacts = m_hierarchy.cells() <= kMostCounted;
+      std::vector<StlReport> reports;
+      if (m_arguments.eachMaterial) {
+         auto all = writeStlByMaterial(m_hierarchy, m_maker.get(), options, m_arguments.out, m_context.job());
+         if (!all)
+            return all.error();
+         reports = *std::move(all);
+      } else {
+         auto one = writeStl(m_hierarchy, m_maker.get(), options, m_arguments.out, m_context.job());
+         if (!one)
+            return one.error();
+         reports.push_back(*std::move(one));
+      }
+      auto files = Json::array();
+      for (const StlReport &report : reports) {
+         Json file{{"file", report.file.string()}};
+         if (report.material)
+            file["material"] = idOf(*report.material);
+         file["triangles"] = report.triangles;
+         file["bytes"] = report.bytes;
+         file["cells"] = report.cells;
+         if (m_arguments.as == "parts")
+            file["parts"] = report.parts;
+         if (report.edgeContacts)
+            file["edge_contacts"] = *report.edgeContacts;
+         if (report.vertexContacts)
+            file["vertex_contacts"] = *report.vertexContacts;
+         files.push_back(std::move(file));
+      }
+      return files;
+   }
+
+   Result<Json> indexed()
+   {
+      if (!m_arguments.eachMaterial) {
+         auto file = indexedFile(m_arguments.out, m_material);
+         if (!file)
+            return file.error();
+         return Json::array({*std::move(file)});
+      }
+      if (m_arguments.out == "-")
+         return Error{ErrorCode::usage, "a file per material cannot go to standard output; give a file name"};
+      auto files = Json::array();
+      const auto counts = m_hierarchy.countByMaterial();
+      const std::filesystem::path out(m_arguments.out);
+      for (std::size_t material = 1; material < counts.size(); ++material) {
+         if (counts[material] == 0)
+            continue;
+         const auto index = static_cast<MaterialIndex>(material);
+         const auto name = out.stem().string() + "." + idOf(index) + out.extension().string();
+         auto file = indexedFile(out.parent_path() / name, index);
+         if (!file)
+            return file.error();
+         files.push_back(*std::move(file));
+      }
+      return files;
+   }
+
+   Result<StrutOptions> strutOptions() const
+   {
+      StrutOptions options;
+      options.connections = m_arguments.connections;
+      options.overlapping = m_arguments.overlapping;
+      options.beams = m_arguments.beams;
+      options.sides = m_arguments.section == "square" ? 4 : m_arguments.sides.value_or(options.sides);
+      if (!m_arguments.strutWidth.empty()) {
+         const auto width = lengthOf(m_arguments.strutWidth, m_unitName);
+         if (!width)
+            return Error{ErrorCode::usage,
+                         fmt::format("--strut-width {}: give a positive length, as 0.4 or 0.4mm",
+                                     m_arguments.strutWidth)};
+         options.width = *width;
+      }
+      return options;
+   }
+
+   Result<Json> indexedFile(const std::filesystem::path &path, std::optional<MaterialIndex> material)
+   {
+      GeometryOptions options;
+      options.what = m_arguments.as == "parts"    ? GeometryOptions::What::parts
+                     : m_arguments.as == "struts" ? GeometryOptions::What::struts
+                                                  : GeometryOptions::What::cells;
+      options.material = material;
+      options.detail = m_arguments.detail;
+      options.apart = m_arguments.solids == "material" && m_format != GeometryFormat::stl;
+      const auto struts = strutOptions();
+      if (!struts)
+         return struts.error();
+      options.struts = *struts;
+      const auto geometry = makeGeometry(m_hierarchy, m_maker.get(), options, m_context.job());
+      if (!geometry)
+         return geometry.error();
+      const auto bytes = writeGeometry(*geometry, m_format, unit(), path, m_context.job());
+      if (!bytes)
+         return bytes.error();
+      Json file{{"file", path.string()}};
+      if (material)
+         file["material"] = idOf(*material);
+      file["solids"] = geometry->solids.size() + geometry->beams.size();
+      file["triangles"] = geometry->triangles();
+      file["bytes"] = *bytes;
+      file["cells"] = geometry->cells;
+      if (m_arguments.as == "parts")
+         file["parts"] = geometry->parts;
+      if (m_arguments.as == "struts") {
+         file["struts"] = geometry->struts.struts;
+         file["nodes"] = geometry->struts.nodes;
+         file["strut_width"] = geometry->struts.width / unit();
+         if (geometry->struts.widest > 0)
+            file["widest"] = geometry->struts.widest / unit();
+      }
+      file["edge_contacts"] = geometry->edgeContacts();
+      file["vertex_contacts"] = geometry->vertexContacts();
+      return file;
+   }
+
+   const ExportArguments &m_arguments;
+   GeometryFormat m_format;
+   const Hierarchy &m_hierarchy;
+   Context &m_context;
+   std::string m_unitName;
+   std::optional<MaterialIndex> m_material;
+   std::shared_ptr<const PartMaker> m_maker;
+};
+
+/// By --format, else by the suffix; STL on standard output.
+Result<GeometryFormat> formatOf(const ExportArguments &arguments)
+{
+   if (!arguments.format.empty())
+      return *geometryFormat("x." + arguments.format);
+   if (arguments.out == "-")
+      return GeometryFormat::stl;
+   if (const auto format = geometryFormat(arguments.out))
+      return *format;
+   return Error{ErrorCode::usage,
+                fmt::format("{}: the format is told by the suffix, one of {}; or give --format",
+                            arguments.out, geometrySuffixes())};
 }
 
 void run(const ExportArguments &arguments, Context &context)
 {
-   const auto suffix = std::filesystem::path(arguments.out).extension();
-   if (arguments.out != "-" && suffix != ".stl" && suffix != ".STL") {
-      context.fail(
-          {ErrorCode::usage,
-           fmt::format("{}: the format is told by the suffix, and only .stl is known", arguments.out)});
-      return;
-   }
+   const auto format = formatOf(arguments);
+   if (!format)
+      return context.fail(format.error());
+   if (const std::string why = conflict(arguments, *format); !why.empty())
+      return context.fail({ErrorCode::usage, why});
    const auto input = context.open(arguments.file);
    if (!input)
       return;
-   const auto reports = write(arguments, *input, context);
-   if (!reports) {
-      context.fail(reports.error());
-      return;
-   }
+   const auto report = Export(arguments, *format, *input, context).run();
+   if (!report)
+      return context.fail(report.error());
    if (arguments.out != "-") // standard output carries the file itself
-      context.print(reportOf(*reports, arguments, input->hierarchy->model()));
+      context.print(*report);
 }
 
 } // namespace
@@ -123,23 +307,47 @@ void run(const ExportArguments &arguments, Context &context)
 void addExport(CLI::App &app, Context &context)
 {
    auto arguments = std::make_shared<ExportArguments>();
-   auto *command = app.add_subcommand("export", "Write a design as STL");
+   auto *command = app.add_subcommand("export", "Write a design as STL, 3MF, OBJ, PLY or glTF");
    command->add_option("FILE", arguments->file, "A design, - for standard input")->required();
-   command->add_option("OUT", arguments->out, "The .stl file, - for standard output")->required();
-   command->add_option("--as", arguments->as, "Cells as their polyhedra, or the parts that are really made")
-       ->check(CLI::IsMember({"cells", "parts"}))
+   command
+       ->add_option("OUT", arguments->out, "The file, its format told by the suffix; - for standard output")
+       ->required();
+   command
+       ->add_option("--as", arguments->as,
+                    "Cells as their polyhedra, the parts that are really made, or the edges as struts")
+       ->check(CLI::IsMember({"cells", "parts", "struts"}))
        ->capture_default_str();
    auto *material = command->add_option("--material", arguments->material, "Only the material of this id");
    command->add_flag("--each-material", arguments->eachMaterial, "One file per material: OUT.MATERIAL.stl")
        ->excludes(material);
+   command
+       ->add_option("--solids", arguments->solids,
+                    "In all but STL: a solid for each material, or one without walls between materials")
+       ->check(CLI::IsMember({"material", "one"}))
+       ->capture_default_str();
    command->add_option("--parts", arguments->parts,
                        "Which parts, when several fit the lattice: see diatom parts");
    command->add_option("--detail", arguments->detail, "Mesh detail of parts, 0 coarse; the finest by default")
        ->check(kNonNegative);
+   command->add_option("--format", arguments->format, "Instead of the suffix's")
+       ->check(CLI::IsMember({"stl", "3mf", "obj", "ply", "gltf", "glb"}));
    command->add_flag("--ascii", arguments->ascii, "ASCII instead of binary STL");
-   command->add_option("--unit", arguments->unit, "Length of one STL unit")
-       ->check(CLI::IsMember(unitNames()))
+   command->add_option("--unit", arguments->unit, "Length of one unit; mm by default, glTF always has m")
+       ->check(CLI::IsMember(unitNames()));
+   command->add_option("--strut-width", arguments->strutWidth,
+                       "Diameter or side of struts, as 0.4mm; chosen for the design by default");
+   command->add_option("--strut-section", arguments->section, "Of struts")
+       ->check(CLI::IsMember({"round", "square"}))
        ->capture_default_str();
+   command
+       ->add_option("--strut-sides", arguments->sides, "Flat sides of a round strut, 3 to 64; 8 by default")
+       ->check(CLI::Range(3, 64));
+   command->add_flag("--connections", arguments->connections,
+                     "Struts from centre to centre of joined cells instead of edges");
+   command->add_flag("--overlapping", arguments->overlapping,
+                     "Struts as shells that overlap at nodes: quick, at any width");
+   command->add_flag("--beams", arguments->beams,
+                     "In 3MF: struts by their axes (the beam lattice extension)");
    command->callback([arguments, &context] { run(*arguments, context); });
 }
 

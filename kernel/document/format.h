@@ -1,8 +1,8 @@
 // The .diatom format, version 1, between Design and JSON. resources/schema/diatom-1.schema.json describes it.
 #pragma once
 
+#include "core/archive.h"
 #include "core/job.h"
-#include "document/archive.h"
 #include "document/design.h"
 #include "document/json_place.h"
 

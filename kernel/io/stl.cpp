@@ -1,5 +1,6 @@
 #include "io/stl.h"
 
+#include "io/solid_mesh.h"
 #include "io/stl_file.h"
 #include "io/surface.h"
 
@@ -157,9 +158,16 @@ struct Export
          return drawn.error();
       if (const Status done = out.commit(); !done)
          return done.error();
-      StlReport report{file, options.material, out.triangles(), out.bytes(), 0, 0};
+      StlReport report{file, options.material, out.triangles(), out.bytes(), 0, 0, {}, {}};
       if (options.what == StlOptions::What::cells)
          report.cells = cellCount(hierarchy, options.material);
+      if (options.what == StlOptions::What::cells && options.contacts) {
+         const auto solid = cellSolid(hierarchy, options.material, job);
+         if (!solid)
+            return solid.error();
+         report.edgeContacts = solid->edgeContacts;
+         report.vertexContacts = solid->vertexContacts;
+      }
       for (const Part &part : parts.parts)
          if (!options.material || part.material == *options.material) {
             ++report.parts;

@@ -22,6 +22,8 @@ struct StlOptions
    bool ascii = false;
    int detail = -1;    // of part meshes; -1 = the finest
    double unit = 1e-3; // metres per STL unit: millimetres by custom
+   bool contacts =
+       false; // also count where cells touch only at edges and corners; holds the surface in memory
    /// Where a corner of cells is to be, from where it is at rest; none leaves them at rest.
    std::function<Vec3(const Vec3 &)> moved;
 };
@@ -32,6 +34,7 @@ struct StlReport
    std::optional<MaterialIndex> material; // when the file holds only this one
    std::uint64_t triangles = 0, bytes = 0;
    std::uint64_t cells = 0, parts = 0;
+   std::optional<std::uint64_t> edgeContacts, vertexContacts; // of cells, when asked for
 };
 
 /// `maker` is needed for parts only and may be null otherwise.

@@ -9,13 +9,14 @@ SurfaceTables::SurfaceTables(const Lattice &lattice) : m_lattice(lattice)
 {
    const auto period = lattice.period();
    m_faces.resize(static_cast<std::size_t>(lattice.sites()));
+   m_owners.resize(static_cast<std::size_t>(lattice.sites()));
    Index i;
    for (i.x = 0; i.x < period[0]; ++i.x)
       for (i.y = 0; i.y < period[1]; ++i.y)
          for (i.z = 0; i.z < period[2]; ++i.z) {
             const int site = lattice.site(i);
             const Shape &shape = lattice.shape(site);
-            std::vector<CornerOwner> owners;
+            auto &owners = m_owners[static_cast<std::size_t>(site)];
             for (int vertex = 0; vertex < static_cast<int>(shape.vertices.size()); ++vertex)
                owners.push_back(ownerOf(site, i, vertex));
             for (int face = 0; face < static_cast<int>(shape.faces.size()); ++face) {

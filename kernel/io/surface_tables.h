@@ -29,6 +29,10 @@ public:
    explicit SurfaceTables(const Lattice &lattice);
 
    const std::vector<FaceTable> &faces(int site) const { return m_faces[static_cast<std::size_t>(site)]; }
+   const std::vector<CornerOwner> &corners(int site) const
+   {
+      return m_owners[static_cast<std::size_t>(site)];
+   }
    /// How far `across` reaches along any axis.
    int halo() const { return m_halo; }
    Vec3 corner(Index cell, const CornerOwner &owner) const;
@@ -38,6 +42,7 @@ private:
 
    const Lattice &m_lattice;
    std::vector<std::vector<FaceTable>> m_faces;
+   std::vector<std::vector<CornerOwner>> m_owners; // per site and vertex of the shape
    int m_halo = 0;
 };
 

@@ -5,8 +5,8 @@
 #include "tests/kernel/document_designs.h"
 #include "tests/support/support.h"
 
+#include "core/archive.h"
 #include "core/file.h"
-#include "document/archive.h"
 
 #include <random>
 #include <ranges>

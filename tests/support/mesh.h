@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -60,6 +61,42 @@ MeshFacts meshFacts(const std::vector<Triangle<Number>> &triangles)
       facts.manifold = facts.manifold && back == 1 && uses == 1 && edge.first != edge.second;
    }
    return facts;
+}
+
+/// What is wrong with a surface as a 2-manifold, told by its indices alone; empty when nothing is.
+inline std::string manifoldFault(const std::vector<std::array<std::uint32_t, 3>> &triangles,
+                                 std::size_t vertices)
+{
+   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> thirds; // directed edge, opposite corner
+   std::vector<std::uint32_t> uses(vertices, 0);
+   for (const auto &t : triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+         if (t[k] >= vertices)
+            return "an index beyond the vertices";
+         ++uses[t[k]];
+         if (!thirds.emplace(std::pair(t[k], t[(k + 1) % 3]), t[(k + 2) % 3]).second)
+            return "an edge used twice in one direction";
+      }
+   for (const auto &[edge, third] : thirds)
+      if (!thirds.count({edge.second, edge.first}))
+         return "an edge with one triangle";
+   std::vector<bool> seen(vertices, false);
+   for (const auto &[edge, third] : thirds) { // round each vertex once, from one of its triangles to the next
+      const auto [centre, start] = edge;
+      if (seen[centre])
+         continue;
+      seen[centre] = true;
+      std::uint32_t round = 0, spoke = start;
+      do {
+         spoke = thirds.at({centre, spoke});
+         ++round;
+      } while (spoke != start && round <= uses[centre]);
+      if (round != uses[centre])
+         return "a vertex with more than one fan";
+   }
+   if (std::find(uses.begin(), uses.end(), 0u) != uses.end())
+      return "a vertex without a triangle";
+   return triangles.empty() ? "no triangles" : "";
 }
 
 } // namespace diatom::test

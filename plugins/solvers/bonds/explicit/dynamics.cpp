@@ -226,9 +226,9 @@ void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t be
 void Dynamics::cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage)
 {
    inPieces(call, m_assembly->cells >= kCellsForThreads, m_assembly->cells,
-            [&](std::int64_t begin, std::int64_t end, std::int64_t number) {
+            [&, piece = m_piece](std::int64_t begin, std::int64_t end, std::int64_t number) {
                m_sums[number] = {};
-               (this->*m_piece)(phase, dt, stage, begin, end, m_sums[number]);
+               (this->*piece)(phase, dt, stage, begin, end, m_sums[number]);
             });
    for (const Sums &sums : m_sums) {
       m_dissipated += sums.dissipated;

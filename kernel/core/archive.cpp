@@ -1,4 +1,4 @@
-#include "document/archive.h"
+#include "core/archive.h"
 
 #include <fmt/format.h>
 #include <zip.h>
@@ -56,7 +56,7 @@ Status addEntry(zip_t *archive, const std::string &name, const std::string &cont
       return failed();
    }
    const auto entry = static_cast<zip_uint64_t>(number);
-   const bool packed = name.ends_with(".json"); // the rest is compressed already
+   const bool packed = name.ends_with(".json") || name.ends_with(".model"); // the rest is small or compressed
    if (zip_set_file_compression(archive, entry, packed ? ZIP_CM_DEFLATE : ZIP_CM_STORE, 6) != 0 ||
        zip_file_set_dostime(archive, entry, kDosTime, kDosDate, 0) != 0)
       return failed();

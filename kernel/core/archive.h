@@ -1,4 +1,4 @@
-// A zip in memory: stored entries, fixed names and dates, so that equal documents are equal bytes.
+// A zip in memory, with fixed names and dates, so that equal content gives equal bytes.
 #pragma once
 
 #include "core/result.h"
