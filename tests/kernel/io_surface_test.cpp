@@ -149,7 +149,7 @@ void SurfaceTest::fullBlocksAreSkippedAndNothingElse()
       std::erase_if(others, [](const Face &face) { return face.material == 3; });
       QVERIFY(faces == others);
    }
-   for (const MaterialIndex material : {1, 2})
+   for (const MaterialIndex material : {MaterialIndex{1}, MaterialIndex{2}})
       QCOMPARE(facesOf(plain.hierarchy(), material).size(),
                std::size_t(2 * n * n + 4 * n * half + (material == 1 ? 6 : 0)));
 }
