@@ -217,6 +217,20 @@ void Context::printTable(const nlohmann::ordered_json &rows) const
    }
 }
 
+std::string fullId(const Catalogue &catalogue, const char *interface, const std::string &given)
+{
+   if (catalogue.offer(interface, given))
+      return given;
+   std::string found;
+   for (const Offer &offer : catalogue.offers(interface))
+      if (offer.provided->id.ends_with("." + given)) {
+         if (!found.empty())
+            return given;
+         found = offer.provided->id;
+      }
+   return found.empty() ? given : found;
+}
+
 Result<Values> parseValues(const std::vector<std::string> &options)
 {
    Values values;

@@ -79,6 +79,10 @@ int exitCode(ErrorCode code);
 /// Each adds one sub-command to the application; it runs as the sub-command's callback and sets context.exit.
 using AddCommand = void (*)(CLI::App &app, Context &context);
 
+/// The full id of an installed thing given in full or by its last word ("gcode"); as given when there is no
+/// or more than one such thing, so that the catalogue says what there is.
+std::string fullId(const Catalogue &catalogue, const char *interface, const std::string &given);
+
 /// Splits "name=value" options into plugin values; numbers where they read as numbers. Null on a missing '='.
 Result<Values> parseValues(const std::vector<std::string> &options);
 

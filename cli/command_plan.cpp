@@ -20,21 +20,6 @@ struct PlanArguments
    std::vector<std::string> settings;
 };
 
-/// The full id of a machine given in full or by its last word ("gcode").
-std::string machineId(const Catalogue &catalogue, const std::string &given)
-{
-   if (catalogue.offer(DIATOM_MACHINE_1, given))
-      return given;
-   std::string found;
-   for (const Offer &offer : catalogue.offers(DIATOM_MACHINE_1))
-      if (offer.provided->id.ends_with("." + given)) {
-         if (!found.empty())
-            return given; // not the only one: let the catalogue say what there is
-         found = offer.provided->id;
-      }
-   return found.empty() ? given : found;
-}
-
 /// The document's choices, with what the command line says instead.
 Result<AssemblySetup> setupOf(const PlanArguments &arguments, const AssemblySetup &stored,
                               const Catalogue &catalogue)
@@ -45,7 +30,7 @@ Result<AssemblySetup> setupOf(const PlanArguments &arguments, const AssemblySetu
       setup.partsValues.clear();
    }
    const std::string machine =
-       arguments.machine.empty() ? stored.machine : machineId(catalogue, arguments.machine);
+       arguments.machine.empty() ? stored.machine : fullId(catalogue, DIATOM_MACHINE_1, arguments.machine);
    if (machine != stored.machine) {
       setup.machine = machine;
       setup.machineValues.clear();

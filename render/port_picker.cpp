@@ -124,7 +124,10 @@ Port cyclePort(const Hierarchy &hierarchy, const Port &from, int steps)
    if (from.base)
       return from;
    const auto ports = portsOf(hierarchy, from.cell);
-   const auto same = [&](const Port &p) { return p.contact == from.contact && p.feature == from.feature; };
+   // Several neighbours may meet at one corner or edge.
+   const auto same = [&](const Port &p) {
+      return p.contact == from.contact && p.feature == from.feature && p.neighbour == from.neighbour;
+   };
    const auto count = static_cast<int>(ports.size());
    int at = static_cast<int>(std::find_if(ports.begin(), ports.end(), same) - ports.begin());
    if (at == count)

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -17,19 +19,25 @@ namespace {
 struct LatticeName
 {
    const char *cell, *connection, *id; // the program's two keys, our lattice
+   std::array<double, 3> pitch;        // its "aspect ratio", as the program had it
 };
 
-constexpr LatticeName kLattices[] = {
-    {"cube", "face", "cube"},
-    {"cube", "gik", "gik"},
-    {"octa", "face", "octahedron_face"},
-    {"octa", "edgeRot", "octahedron_edge"},
-    {"octa", "vertex", "octahedron_vertex"},
-    {"tetra", "stacked", "tetrahedron_stacked"},
-    {"truncatedCube", "face", "cuboctahedron"},
-    {"kelvin", "face", "kelvin"},
-    {"hex", "face", "honeycomb"},
-    {"hex", "faceRot", "honeycomb_rotated"},
+const double kRoot2 = std::sqrt(2.0), kRow = std::sqrt(3.0) / 2, kLayer = 2 / std::sqrt(6.0);
+
+// The fourth and the eighth were in no menu of the program, but its files may name them.
+const LatticeName kLattices[] = {
+    {"cube", "face", "cube", {1, 1, 1}},
+    {"cube", "gik", "gik", {1, 1, 1}},
+    {"octa", "face", "octahedron_face", {1, kRow, kLayer}},
+    {"octa", "edge", "octahedron_edge_flat", {1, kRow, kLayer}},
+    {"octa", "edgeRot", "octahedron_edge", {1, 1, kRoot2 / 2}},
+    {"octa", "vertex", "octahedron_vertex", {kRoot2, kRoot2, kRoot2}},
+    {"tetra", "stacked", "tetrahedron_stacked", {1, kRow, kLayer}},
+    {"tetra", "vertex", "tetrahedron_vertex", {1, kRow, kLayer}},
+    {"truncatedCube", "face", "cuboctahedron", {kRoot2, kRoot2, kRoot2}},
+    {"kelvin", "face", "kelvin", {2 * kRoot2, 2 * kRoot2, 2 * kRoot2}},
+    {"hex", "face", "honeycomb", {2 * kRow, 1.5, 1}},
+    {"hex", "faceRot", "honeycomb_rotated", {3, 1, kRow}},
 };
 
 /// Height of a GIK cell over its width, by application.
@@ -107,7 +115,24 @@ private:
       if (m_gik)
          model().lattice.values["height"] = height(assembly);
       else if (assembly.has("aspectRatio"))
-         note("/assembly/aspectRatio was left out: the lattice's own proportions are used");
+         readAspect(assembly.at("aspectRatio"), found->pitch);
+   }
+
+   /// The program wrote the distances between sites and scaled them alone; here cells stretch along, so that
+   /// they still touch.
+   void readAspect(const JsonPlace &place, const std::array<double, 3> &pitch)
+   {
+      constexpr const char *kAxes[] = {"x", "y", "z"};
+      bool stretched = false;
+      for (std::size_t k = 0; k < 3 && place.object() && place.ok(); ++k) {
+         const double ratio = place.at(kAxes[k]).number(1e-3 * pitch[k], 1e3 * pitch[k]) / pitch[k];
+         if (std::abs(ratio - 1) > 1e-4) { // the program shows four digits
+            model().lattice.aspect[k] = ratio;
+            stretched = true;
+         }
+      }
+      if (stretched)
+         note("/assembly/aspectRatio is not the lattice's own: cells are stretched with their distances");
    }
 
    static double height(const JsonPlace &assembly)

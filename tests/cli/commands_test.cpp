@@ -2,6 +2,8 @@
 #include "cli/program.h"
 #include "core/file.h"
 
+#include <numbers>
+
 using namespace diatom;
 using test::diatomRuns;
 using Outcome = test::Printed;
@@ -23,6 +25,7 @@ private slots:
    void misuseExitsWithTwo();
    void unreadableInputExitsWithThree();
    void aPlaceThatCannotBeWrittenExitsWithFour();
+   void aMeshBecomesCells();
    void turnsTheLatticeDoesNotHaveAreRefused();
    void infoPrintsTheAgreedKeys();
    void standardInputIsAFileToo();
@@ -92,6 +95,33 @@ void CommandsTest::aPlaceThatCannotBeWrittenExitsWithFour()
    const Outcome refused = diatomRuns({"export", sample("gripper.diatom"), file("no/folder/x.stl")});
    QCOMPARE(refused.exit, 4);
    QVERIFY(refused.err.contains("x.stl"));
+}
+
+void CommandsTest::aMeshBecomesCells()
+{
+   const QString cube = file("cube.stl"), design = file("cube.diatom");
+   QCOMPARE(
+       diatomRuns(
+           {"export", "-", cube},
+           R"({"diatom":1,"lattice":{"id":"org.diatom_cad.lattice.cube","pitch_m":0.001},)"
+           R"("materials":[{"id":"a"}],"assembly":{"cells":[{"at":[0,0,0],"size":[8,8,8],"material":"a"}]}})")
+           .exit,
+       0);
+   const Outcome noPitch = diatomRuns({"convert", cube, design});
+   if (noPitch.exit != 2)
+      QSKIP("this build reads no meshes");
+   QVERIFY(noPitch.err.contains("--pitch"));
+   const Outcome filled = diatomRuns({"convert", cube, design, "--lattice", "kelvin_body_centred", "--pitch",
+                                      "0.5 mm", "--rule", "touch", "--material", "foam"});
+   QVERIFY2(filled.exit == 0, filled.err.constData());
+   const QJsonObject info = diatomRuns({"info", design, "--json"}).object();
+   QCOMPARE(info["lattice"].toString(), QString("org.diatom_cad.lattice.kelvin_body_centred"));
+   // Cells of 8 sqrt(2) units^3 fill space: by touch they hold the block and some more.
+   const double least = 512 / (8 * std::numbers::sqrt2 * 0.125), foam = info["materials"]["foam"].toDouble();
+   QVERIFY(foam > least && foam < 2.5 * least);
+   QCOMPARE(diatomRuns({"convert", cube, design, "--pitch", "-1mm"}).exit, 2);
+   QCOMPARE(diatomRuns({"convert", file("absent.stl"), design, "--pitch", "1mm"}).exit, 3);
+   QCOMPARE(diatomRuns({"convert", cube, design, "--pitch", "1mm", "--inside", "x.stl"}).exit, 2);
 }
 
 void CommandsTest::turnsTheLatticeDoesNotHaveAreRefused()

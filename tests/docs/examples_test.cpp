@@ -31,7 +31,7 @@ void ExamplesTest::theLatticeFillsSpaceWithPrisms()
 {
    const Job job;
    LatticeSpec spec;
-   spec.id = "org.example.lattice.honeycomb";
+   spec.id = "org.example.lattice.tall_honeycomb";
    spec.pitch = 1;
    spec.values = {{"height", 2.0}};
    const auto lattice = Lattice::make(*examples(), spec, job);

@@ -3,6 +3,9 @@
 #include "document/files.h"
 #include "tests/support/support.h"
 
+#include <nlohmann/json.hpp>
+
+#include <array>
 #include <cmath>
 
 using namespace diatom;
@@ -240,6 +243,60 @@ private slots:
          QVERIFY(all.cells.contains(index));
          QCOMPARE(int(all.cells.at(index).joins), joins);
       }
+   }
+
+   /// DMDesign sheet 1.15: every pair of keys, in both spellings of the application and of the material.
+   void everyLatticeOfDmdesignIsRead()
+   {
+      const std::array<const char *, 3> names[] = {{"cube", "face", "cube"},
+                                                   {"cube", "gik", "gik"},
+                                                   {"octa", "face", "octahedron_face"},
+                                                   {"octa", "edge", "octahedron_edge_flat"},
+                                                   {"octa", "edgeRot", "octahedron_edge"},
+                                                   {"octa", "vertex", "octahedron_vertex"},
+                                                   {"tetra", "stacked", "tetrahedron_stacked"},
+                                                   {"tetra", "vertex", "tetrahedron_vertex"},
+                                                   {"truncatedCube", "face", "cuboctahedron"},
+                                                   {"kelvin", "face", "kelvin"},
+                                                   {"hex", "face", "honeycomb"},
+                                                   {"hex", "faceRot", "honeycomb_rotated"}};
+      for (const auto &[cell, connection, id] : names)
+         for (const bool old : {false, true}) {
+            nlohmann::json file;
+            file["assembly"] = {{"cellType", cell},
+                                {"connectionType", connection},
+                                {old ? "latticeType" : "applicationType", "default"},
+                                {"units", "inches"},
+                                {"scale", 2},
+                                {"cellsMin", {{"x", -1}, {"y", -1}, {"z", -1}}}};
+            const nlohmann::json element{{old ? "materialName" : "materialID", "rigid"}};
+            file["assembly"]["sparseCells"] = {{nlohmann::json::array({element})}};
+            file["materials"]["rigid"]["name"] = "Rigid";
+            const std::string text = file.dump();
+            const auto opened = readDesign(text, "dm.json", Job());
+            DIATOM_VERIFY_OK(opened);
+            const auto &spec = opened->design.model.lattice;
+            QCOMPARE(spec.id, "org.diatom_cad.lattice." + std::string(id));
+            QCOMPARE(spec.pitch, 2 * 0.0254);
+            QVERIFY(!opened->design.model.root.cells.at({-1, -1, -1}).empty());
+            DIATOM_VERIFY_OK(Lattice::make(*test::catalogue(), spec, Job()));
+         }
+   }
+
+   void anAspectRatioOfItsOwnStretchesTheLattice()
+   {
+      const auto aspectOf = [](double z) {
+         nlohmann::json file;
+         file["assembly"] = {{"cellType", "octa"},
+                             {"connectionType", "edgeRot"},
+                             {"aspectRatio", {{"x", 1}, {"y", 1}, {"z", z}}}};
+         file["materials"] = nlohmann::json::object();
+         const auto opened = readDesign(file.dump(), "dm.json", Job());
+         return opened ? opened->design.model.lattice.aspect : std::array<double, 3>{};
+      };
+      QVERIFY(aspectOf(0.7071) == (std::array<double, 3>{1, 1, 1}));
+      const auto tall = aspectOf(std::sqrt(2.0));
+      QVERIFY(tall[0] == 1 && tall[1] == 1 && std::abs(tall[2] - 2) < 1e-12);
    }
 
    void faultsOfImportedFilesNameThePlace()

@@ -151,7 +151,7 @@ void StlTest::binaryFilesReadBackClosedWithTheCellsVolume()
       QVERIFY(facts.closed);
       // Corners lie within 2^6 units and are rounded to 24 bits: 2^-18 of a unit-sized cell, in random
       // directions.
-      const double wanted = 300 * scene.lattice->shape(0).volume * 1e9; // mm3
+      const double wanted = test::cellVolume(scene.hierarchy()) * 1e9; // mm3
       QVERIFY(std::abs(facts.volume / wanted - 1) < 4e-6);
    }
 }
@@ -298,7 +298,7 @@ void StlTest::anIndependentCheckerAgrees()
         {"boundary_edges", "flipped_edges", "unbalanced_edges", "duplicate_triangles", "degenerate_triangles",
          "wrong_normals", "zero_normals", "coincident_opposite_pairs"})
       QVERIFY2(verdict[fault].get<int>() == 0, fault);
-   const double wanted = 500 * scene.lattice->shape(0).volume * 1e9;
+   const double wanted = test::cellVolume(scene.hierarchy()) * 1e9;
    QVERIFY(std::abs(verdict["volume"].get<double>() / wanted - 1) < 4e-6); // single precision
    // A convex block without single edges is closed in the strict sense.
    test::Scene block(lattice.toStdString());

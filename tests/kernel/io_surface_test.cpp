@@ -103,7 +103,7 @@ void SurfaceTest::randomBlobsHaveClosedSurfacesOfTheirVolume()
          scene.model.root.cells.set(i, {1, 0, 0});
       const auto facts = factsOf(facesOf(scene.hierarchy()));
       QVERIFY2(facts.closed, qPrintable(QString("seed %1").arg(seed)));
-      QVERIFY(sameVolume(facts.volume, 400 * scene.lattice->shape(0).volume));
+      QVERIFY(sameVolume(facts.volume, test::cellVolume(scene.hierarchy())));
    }
 }
 
@@ -116,7 +116,7 @@ void SurfaceTest::hollowSolidsHaveTheirInnerSurfaceToo()
       scene.model.root.cells.set(i, {2, 0, 0});
    const auto facts = factsOf(facesOf(scene.hierarchy()));
    QVERIFY(facts.closed);
-   QVERIFY(sameVolume(facts.volume, double(cells.size()) * scene.lattice->shape(0).volume));
+   QVERIFY(sameVolume(facts.volume, test::cellVolume(scene.hierarchy())));
 }
 
 void SurfaceTest::aHollowCubeHasTheFacesOneCounts()
@@ -163,10 +163,13 @@ void SurfaceTest::twoCellsShareNoWall()
          scene.model.root.cells.clear();
          scene.model.root.cells.set(start, {1, 0, 0});
          scene.model.root.cells.set(start + link.offset, {2, 0, 0});
-         const std::size_t each = scene.lattice->shape(0).faces.size();
-         QCOMPARE(facesOf(scene.hierarchy()).size(), 2 * each - (link.contact == Contact::face ? 2 : 0));
-         QCOMPARE(facesOf(scene.hierarchy(), {}, true).size(), 2 * each);
-         QCOMPARE(facesOf(scene.hierarchy(), 2).size(), each);
+         const auto faces = [&](Index i) {
+            return scene.lattice->shape(scene.lattice->site(i)).faces.size();
+         };
+         const std::size_t one = faces(start), other = faces(start + link.offset);
+         QCOMPARE(facesOf(scene.hierarchy()).size(), one + other - (link.contact == Contact::face ? 2 : 0));
+         QCOMPARE(facesOf(scene.hierarchy(), {}, true).size(), one + other);
+         QCOMPARE(facesOf(scene.hierarchy(), 2).size(), other);
       }
 }
 
@@ -175,16 +178,16 @@ void SurfaceTest::everyMaterialHasAClosedSurfaceOfItsOwn()
    QFETCH(QString, lattice);
    test::Scene scene(lattice.toStdString());
    std::mt19937 random(77);
-   std::array<int, 4> count{};
+   std::array<double, 4> volume{};
    for (const Index i : test::blob(*scene.lattice, 500, 9)) {
       const auto material = static_cast<MaterialIndex>(1 + random() % 3);
       scene.model.root.cells.set(i, {material, 0, 0});
-      ++count[material];
+      volume[material] += scene.lattice->shape(scene.lattice->site(i)).volume;
    }
    const auto hierarchy = scene.hierarchy();
    const auto together = facesOf(hierarchy, {}, true);
    for (MaterialIndex material = 1; material <= 3; ++material) {
-      const double wanted = count[material] * scene.lattice->shape(0).volume;
+      const double wanted = volume[material];
       const auto alone = facesOf(hierarchy, material);
       QVERIFY(factsOf(alone).closed);
       QVERIFY(sameVolume(factsOf(alone).volume, wanted));
@@ -252,7 +255,7 @@ void SurfaceTest::surfacesFarFromTheOriginAreStillClosed()
       const auto facts = factsOf(facesOf(scene.hierarchy()));
       QVERIFY(facts.closed);
       // At 10^9 cells a coordinate is good to 10^-7 of a cell: corners of 200 cells, hence 10^-5.
-      QVERIFY(std::abs(facts.volume / (200 * scene.lattice->shape(0).volume) - 1) < 1e-5);
+      QVERIFY(std::abs(facts.volume / test::cellVolume(scene.hierarchy()) - 1) < 1e-5);
    }
 }
 

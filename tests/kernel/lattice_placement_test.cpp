@@ -1,7 +1,6 @@
 // Composites on a lattice: where their cells land, which placements are allowed, and how cells turn with
 // them.
-#include "lattice/lattice.h"
-#include "support/support.h"
+#include "support/lattices.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,17 +11,6 @@ using namespace diatom;
 namespace {
 
 constexpr unsigned kSeed = 7;
-
-std::shared_ptr<const Lattice> lattice(const std::string &name, std::array<double, 3> aspect = {1, 1, 1})
-{
-   LatticeSpec spec;
-   spec.id = "org.diatom_cad.lattice." + name;
-   spec.aspect = aspect;
-   const auto made = Lattice::make(*test::catalogue(), spec, Job());
-   if (!made)
-      qWarning("%s", made.error().message.c_str());
-   return made ? *made : nullptr;
-}
 
 Index randomIndex(std::mt19937_64 &random, int range)
 {
@@ -42,9 +30,11 @@ void addLattices()
 {
    QTest::addColumn<QString>("name");
    QTest::addColumn<QList<double>>("aspect");
-   for (const char *name : {"cube", "gik", "octahedron_edge", "kelvin"}) {
-      QTest::newRow(name) << name << QList<double>{1, 1, 1};
-      QTest::newRow((name + std::string(" stretched")).c_str()) << name << QList<double>{1, 1, 1.3};
+   for (const std::string &name : test::latticeNames()) {
+      const auto text = QString::fromStdString(name);
+      QTest::newRow(name.c_str()) << text << QList<double>{1, 1, 1};
+      QTest::newRow((name + " stretched").c_str()) << text << QList<double>{1, 1, 1.3};
+      QTest::newRow((name + " oblong").c_str()) << text << QList<double>{1, 1.2, 0.9};
    }
 }
 
@@ -53,7 +43,7 @@ std::shared_ptr<const Lattice> fetchedLattice()
    const QString *name = static_cast<const QString *>(QTest::qData("name", QMetaType::QString));
    const auto *aspect =
        static_cast<const QList<double> *>(QTest::qData("aspect", qMetaTypeId<QList<double>>()));
-   return lattice(name->toStdString(), {aspect->at(0), aspect->at(1), aspect->at(2)});
+   return test::namedLattice(name->toStdString(), 1e-3, {aspect->at(0), aspect->at(1), aspect->at(2)});
 }
 
 } // namespace
@@ -92,12 +82,13 @@ void LatticePlacementTest::unplaceUndoesPlace()
       QVERIFY(l->unplace(origin, r, l->place(origin, r, local)) == local);
       QVERIFY(l->place(origin, r, Index{}) == origin);
    }
-   // Whole index range, where a map through positions has the fewest digits to spare.
+   // Far out, where a map through positions has the fewest digits to spare; a step along one axis may be up
+   // to four along another.
    const Index far{(1 << 29) - 3, -(1 << 29) + 1, (1 << 29) - 2};
    for (int r = 0; r < static_cast<int>(l->rotations().size()); ++r)
       if (l->placementAllowed(far, r))
-         QVERIFY(l->unplace(far, r, l->place(far, r, {1 << 28, 77, -(1 << 28)})) ==
-                 (Index{1 << 28, 77, -(1 << 28)}));
+         QVERIFY(l->unplace(far, r, l->place(far, r, {1 << 26, 77, -(1 << 26)})) ==
+                 (Index{1 << 26, 77, -(1 << 26)}));
 }
 
 void LatticePlacementTest::placementsKeepContactsAndShapes()
@@ -128,7 +119,7 @@ void LatticePlacementTest::placementsKeepContactsAndShapes()
                              [&](const Vec3 &c) { return (turn * corner - c).norm() < 1e-9 * l->radius(); }));
       }
    }
-   QVERIFY(allowed > 1000);
+   QVERIFY(allowed > 800); // a quarter and more of the placements, whatever the lattice
 }
 
 void LatticePlacementTest::rotationsFormAGroupAndPlacementsCompose()
@@ -190,12 +181,12 @@ void LatticePlacementTest::theIdentityIsFirstAndMovesOnly()
    QVERIFY(l->placementAllowed({}, 0));
    for (int site = 0; site < l->sites(); ++site)
       for (int o = 0; o < static_cast<int>(l->shape(site).rotations.size()); ++o)
-         QCOMPARE(l->turnedOrientation({0, 0, site}, 0, o), o);
+         QCOMPARE(l->turnedOrientation(test::siteIndex(*l, site), 0, o), o);
 }
 
 void LatticePlacementTest::bricksTurnByAQuarterBetweenLayers()
 {
-   const auto l = lattice("gik");
+   const auto l = test::namedLattice("gik");
    QVERIFY(l);
    QCOMPARE(l->rotations().size(), std::size_t{8});
    for (int r = 0; r < 8; ++r) {
@@ -212,7 +203,7 @@ void LatticePlacementTest::bricksTurnByAQuarterBetweenLayers()
 
 void LatticePlacementTest::brickStepsFollowTheLayers()
 {
-   const auto l = lattice("gik");
+   const auto l = test::namedLattice("gik");
    QVERIFY(l && l->hasSupercells());
    for (int z = -3; z <= 3; ++z) {
       const int site = l->site({0, 0, z});
@@ -225,15 +216,17 @@ void LatticePlacementTest::brickStepsFollowTheLayers()
    }
    QCOMPARE(l->supercellLongest(), 0);
    QCOMPARE(l->supercellDefault(), 4);
-   QVERIFY(!lattice("cube")->hasSupercells());
+   QVERIFY(!test::namedLattice("cube")->hasSupercells());
 }
 
 void LatticePlacementTest::rotationsAreNumberedAsDocumented()
 {
    // Documents store these numbers: turns about z by 0, 90, 180, 270 degrees come first on every square
    // lattice.
-   for (const char *name : {"cube", "gik", "octahedron_edge", "kelvin"}) {
-      const auto l = lattice(name);
+   for (const char *name : {"cube", "gik", "octahedron_edge", "octahedron_vertex", "cuboctahedron", "kelvin",
+                            "kelvin_body_centred", "rhombic_dodecahedron"})
+   {
+      const auto l = test::namedLattice(name);
       QVERIFY(l);
       for (int r = 0; r < 4; ++r) {
          const Quat expected(Eigen::AngleAxisd(r * std::acos(-1.0) / 2, Vec3::UnitZ()));

@@ -12,9 +12,21 @@
 
 namespace diatom::test {
 
-inline const std::vector<std::string> kLattices = {
-    "org.diatom_cad.lattice.cube", "org.diatom_cad.lattice.gik", "org.diatom_cad.lattice.octahedron_edge",
-    "org.diatom_cad.lattice.kelvin"};
+inline const std::vector<std::string> kLattices = {"org.diatom_cad.lattice.cube",
+                                                   "org.diatom_cad.lattice.gik",
+                                                   "org.diatom_cad.lattice.octahedron_edge",
+                                                   "org.diatom_cad.lattice.kelvin",
+                                                   "org.diatom_cad.lattice.octahedron_face",
+                                                   "org.diatom_cad.lattice.octahedron_edge_flat",
+                                                   "org.diatom_cad.lattice.octahedron_vertex",
+                                                   "org.diatom_cad.lattice.tetrahedron_stacked",
+                                                   "org.diatom_cad.lattice.tetrahedron_vertex",
+                                                   "org.diatom_cad.lattice.cuboctahedron",
+                                                   "org.diatom_cad.lattice.kelvin_body_centred",
+                                                   "org.diatom_cad.lattice.honeycomb",
+                                                   "org.diatom_cad.lattice.honeycomb_rotated",
+                                                   "org.diatom_cad.lattice.rhombic_dodecahedron",
+                                                   "org.diatom_cad.lattice.octet"};
 
 /// A model on its lattice with three materials: a, b, c are 1, 2, 3.
 struct Scene
@@ -39,6 +51,18 @@ struct Scene
    }
    Hierarchy hierarchy() const { return Hierarchy(lattice, model); }
 };
+
+/// Volume of all cells; they differ where a lattice has several shapes.
+inline double cellVolume(const Hierarchy &hierarchy)
+{
+   double volume = 0;
+   const Lattice &lattice = hierarchy.lattice();
+   hierarchy.visit(hierarchy.bounds(), [&](Index i, Cell) {
+      volume += lattice.shape(lattice.site(i)).volume;
+      return true;
+   });
+   return volume;
+}
 
 /// `count` connected cells around `start`: each new one touches one that is there.
 inline std::vector<Index> blob(const Lattice &lattice, std::size_t count, unsigned seed, Index start = {})
