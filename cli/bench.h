@@ -68,6 +68,7 @@ struct Benchmark
 };
 
 std::span<const Benchmark> cellBenchmarks();
+std::span<const Benchmark> exportBenchmarks();
 std::span<const Benchmark> mechanicsBenchmarks();
 
 /// Of this process, now; 0 where nothing tells.

@@ -25,6 +25,7 @@ struct Group
 
 constexpr Group kGroups[] = {
     {"cells", cellBenchmarks},
+    {"export", exportBenchmarks},
     {"mechanics", mechanicsBenchmarks},
 };
 

@@ -39,7 +39,7 @@ public:
          auto last = first + 1;
          while (last != m_uses.end() && last->sameEdge(*first))
             ++last;
-         if (const Status paired = pairUp({first, last}); !paired)
+         if (Status paired = pairUp({first, last}); !paired)
             return paired;
          first = last;
       }

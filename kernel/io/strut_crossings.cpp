@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 namespace diatom {
 
 namespace {
 
-/// A line, where along it (0 to 1), and the node there or the line that it crosses.
+/// A line, where along it (0 to 1), and the node there.
 struct Cut
 {
    std::uint32_t line;
@@ -92,8 +93,10 @@ private:
       const Vec3 u = along(one), v = along(other);
       if ((middle(one) - middle(other)).norm() > (u.norm() + v.norm()) / 2 + m_tolerance)
          return;
-      const bool touched = endsOn(i, other.a, cuts) | endsOn(i, other.b, cuts) | endsOn(j, one.a, cuts) |
-                           endsOn(j, one.b, cuts);
+      bool touched = false;
+      for (const auto &[line, node] :
+           {std::pair(i, other.a), std::pair(i, other.b), std::pair(j, one.a), std::pair(j, one.b)})
+         touched = endsOn(line, node, cuts) || touched;
       if (touched || one.a == other.a || one.a == other.b || one.b == other.a || one.b == other.b)
          return;
       const Vec3 normal = u.cross(v), w = m_nodes[other.a] - m_nodes[one.a];

@@ -42,7 +42,7 @@ struct Item
 class Crowding
 {
 public:
-   Crowding(const StrutGraph &graph, const std::vector<double> &setBacks) : m_graph(graph)
+   Crowding(const StrutGraph &graph, const std::vector<double> &setBacks)
    {
       double longest = 0;
       for (const Strut &strut : graph.struts) {
@@ -85,7 +85,6 @@ private:
    {
       return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
    }
-   const StrutGraph &m_graph;
    std::vector<Item> m_items;
    std::unordered_set<std::uint64_t> m_connected;
    PlaceGrid m_grid{1};

@@ -98,7 +98,8 @@ private:
 
    const Vec3 &rim(const Strut &strut, int k) const
    {
-      return m_rim[static_cast<std::size_t>(strut.axis * m_sides + k)];
+      return m_rim[static_cast<std::size_t>(strut.axis) * static_cast<std::size_t>(m_sides) +
+                   static_cast<std::size_t>(k)];
    }
 
    void face(MaterialIndex material, std::span<const std::uint64_t> corners)

@@ -10,7 +10,8 @@ namespace diatom {
 
 namespace {
 
-constexpr std::int64_t kLeaf = 32;                     // cells along a block that is expanded
+constexpr std::int64_t kLeaf = 16;                     // cells along a block that is expanded
+constexpr std::int64_t kBuried = 256;                  // cells along a block worth asking whether it is full
 constexpr std::int64_t kWorld = std::int64_t{1} << 31; // the cube that holds every index
 
 /// One block of materials with a border as wide as faces look. 0 = no cell.
@@ -27,6 +28,13 @@ public:
       m_material.assign(static_cast<std::size_t>(m_stepX * (std::int64_t{m_max.x} - m_min.x + 1)), 0);
    }
    Box box() const { return {m_min, m_max}; }
+   void fill(const Box &box, MaterialIndex material)
+   {
+      Index i;
+      for (i.x = box.min.x; i.x <= box.max.x; ++i.x)
+         for (i.y = box.min.y; i.y <= box.max.y; ++i.y)
+            std::fill_n(&at({i.x, i.y, box.min.z}), std::int64_t{box.max.z} - box.min.z + 1, material);
+   }
    MaterialIndex &at(Index i)
    {
       return m_material[static_cast<std::size_t>((i.x - m_min.x) * m_stepX + (i.y - m_min.y) * m_stepY + i.z -
@@ -45,7 +53,8 @@ public:
    SurfaceScan(const Hierarchy &hierarchy, std::optional<MaterialIndex> material, bool betweenMaterials,
                const std::function<void(const SurfaceFace &)> &visit, const Job &job)
        : m_hierarchy(hierarchy), m_lattice(hierarchy.lattice()), m_tables(m_lattice), m_material(material),
-         m_between(betweenMaterials), m_visit(visit), m_job(job), m_bounds(hierarchy.bounds())
+         m_between(betweenMaterials), m_visit(visit), m_job(job), m_bounds(hierarchy.bounds()),
+         m_rootOnly(hierarchy.model().root.instances.count() == 0)
    {}
 
    Status run()
@@ -90,10 +99,12 @@ private:
          return true;
       if (m_job.cancelled())
          return false;
-      if (size <= kLeaf)
-         return leaf(box);
       if (box.volume() > double(kLeaf * kLeaf * kLeaf) && !occupied(box))
          return true;
+      if (size <= kBuried && m_tables.allLinked() && buried(box))
+         return true;
+      if (size <= kLeaf)
+         return leaf(box);
       const std::int64_t half = size / 2;
       for (int child = 0; child < 8; ++child)
          if (!descend({low[0] + (child & 4 ? half : 0), low[1] + (child & 2 ? half : 0),
@@ -103,10 +114,44 @@ private:
       return true;
    }
 
-   bool leaf(const Box &box)
+   Box widened(const Box &box) const
    {
-      DenseBlock block(box, m_tables.halo());
+      const int halo = m_tables.halo();
+      return {{box.min.x - halo, box.min.y - halo, box.min.z - halo},
+              {box.max.x + halo, box.max.y + halo, box.max.z + halo}};
+   }
+
+   /// Whether the root's own cells, which show above all others, fill the box and its surroundings.
+   bool buried(const Box &box)
+   {
+      const Box around = widened(box);
+      double filled = 0;
+      MaterialIndex first = 0;
+      bool same = true;
+      m_hierarchy.model().root.cells.visitBlocks(around, [&](const Box &part, Cell cell) {
+         first = first == 0 ? cell.material : first;
+         same = exists(cell.material) && (!m_between || cell.material == first);
+         filled += part.volume();
+         return same;
+      });
+      if (!same || filled < around.volume())
+         return false;
+      m_done += static_cast<std::uint64_t>(box.volume());
+      return true;
+   }
+
+   /// The materials of a block. 0 when no cell lies within the box.
+   std::uint64_t gather(const Box &box, DenseBlock &block)
+   {
       std::uint64_t inside = 0;
+      if (m_rootOnly) { // stored runs, much faster than cell by cell
+         m_hierarchy.model().root.cells.visitBlocks(block.box(), [&](const Box &part, Cell cell) {
+            block.fill(part, cell.material);
+            inside += part.intersects(box) ? 1 : 0;
+            return true;
+         });
+         return inside;
+      }
       m_hierarchy.visit(block.box(), [&](Index i, Cell cell) {
          MaterialIndex &material = block.at(i);
          // Where several cells overlap, the one the hierarchy shows.
@@ -114,15 +159,22 @@ private:
          inside += box.contains(i) ? 1 : 0;
          return true;
       });
-      if (inside == 0)
+      return inside;
+   }
+
+   bool leaf(const Box &box)
+   {
+      DenseBlock block(box, m_tables.halo());
+      if (gather(box, block) == 0)
          return true;
       Index i;
       for (i.x = box.min.x; i.x <= box.max.x; ++i.x)
          for (i.y = box.min.y; i.y <= box.max.y; ++i.y)
             for (i.z = box.min.z; i.z <= box.max.z; ++i.z)
-               if (const MaterialIndex material = block.at(i); exists(material))
+               if (const MaterialIndex material = block.at(i); exists(material)) {
                   cell(i, material, block);
-      m_done += inside;
+                  ++m_done;
+               }
       m_job.progress(static_cast<double>(m_done) /
                          static_cast<double>(std::max<std::uint64_t>(m_hierarchy.cells(), 1)),
                      "finding the surface");
@@ -159,6 +211,7 @@ private:
    const std::function<void(const SurfaceFace &)> &m_visit;
    const Job &m_job;
    Box m_bounds;
+   bool m_rootOnly;
    std::uint64_t m_done = 0;
    std::vector<Vec3> m_corners;
 };

@@ -27,6 +27,7 @@ SurfaceTables::SurfaceTables(const Lattice &lattice) : m_lattice(lattice)
                   m_halo = std::max(
                       {m_halo, std::abs(link->offset.x), std::abs(link->offset.y), std::abs(link->offset.z)});
                }
+               m_allLinked = m_allLinked && table.linked;
                for (const int vertex : shape.faces[static_cast<std::size_t>(face)])
                   table.corners.push_back(owners[static_cast<std::size_t>(vertex)]);
                m_faces[static_cast<std::size_t>(site)].push_back(std::move(table));

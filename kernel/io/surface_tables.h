@@ -35,6 +35,8 @@ public:
    }
    /// How far `across` reaches along any axis.
    int halo() const { return m_halo; }
+   /// Whether some cell can lie across every face: only then cells can be wholly covered.
+   bool allLinked() const { return m_allLinked; }
    Vec3 corner(Index cell, const CornerOwner &owner) const;
 
 private:
@@ -44,6 +46,7 @@ private:
    std::vector<std::vector<FaceTable>> m_faces;
    std::vector<std::vector<CornerOwner>> m_owners; // per site and vertex of the shape
    int m_halo = 0;
+   bool m_allLinked = true;
 };
 
 } // namespace diatom

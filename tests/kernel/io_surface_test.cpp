@@ -78,6 +78,7 @@ private slots:
    void hollowSolidsHaveTheirInnerSurfaceToo_data() { addLattices(); }
    void hollowSolidsHaveTheirInnerSurfaceToo();
    void aHollowCubeHasTheFacesOneCounts();
+   void fullBlocksAreSkippedAndNothingElse();
    void twoCellsShareNoWall_data() { addLattices(); }
    void twoCellsShareNoWall();
    void everyMaterialHasAClosedSurfaceOfItsOwn_data() { addLattices(); }
@@ -125,6 +126,32 @@ void SurfaceTest::aHollowCubeHasTheFacesOneCounts()
    for (const Index i : test::hollowBox({0, 0, 0}, {n - 1, n - 1, n - 1}))
       scene.model.root.cells.set(i, {1, 0, 0});
    QCOMPARE(facesOf(scene.hierarchy()).size(), std::size_t(6 * n * n + 6 * (n - 2) * (n - 2)));
+}
+
+void SurfaceTest::fullBlocksAreSkippedAndNothingElse()
+{
+   constexpr int n = 70, half = 35; // wide enough for blocks that are full with all that is round them
+   test::Scene plain(test::kLattices[0]);
+   plain.model.root.cells.fill({{0, 0, 0}, {half - 1, n - 1, n - 1}}, {1, 0, 0});
+   plain.model.root.cells.fill({{half, 0, 0}, {n - 1, n - 1, n - 1}}, {2, 0, 0});
+   plain.model.root.cells.set({20, 20, 20}, {});
+   // An instance far away makes the walk go through the hierarchy instead of the stored runs.
+   test::Scene walked = plain;
+   Definition dot{"dot", "dot", {}, {}};
+   dot.body.cells.set({0, 0, 0}, {3, 0, 0});
+   const auto id = walked.model.setDefinition(dot);
+   DIATOM_VERIFY_OK(id);
+   walked.model.root.instances.insert({*id, Index{500, 0, 0}, 0});
+   for (const bool between : {false, true}) {
+      const auto faces = facesOf(plain.hierarchy(), {}, between);
+      QCOMPARE(faces.size(), std::size_t(6 * n * n + 6 + (between ? 2 * n * n : 0)));
+      auto others = facesOf(walked.hierarchy(), {}, between);
+      std::erase_if(others, [](const Face &face) { return face.material == 3; });
+      QVERIFY(faces == others);
+   }
+   for (const MaterialIndex material : {MaterialIndex{1}, MaterialIndex{2}})
+      QCOMPARE(facesOf(plain.hierarchy(), material).size(),
+               std::size_t(2 * n * n + 4 * n * half + (material == 1 ? 6 : 0)));
 }
 
 void SurfaceTest::twoCellsShareNoWall()
