@@ -185,10 +185,14 @@ Result<Mesh> PartMaker::mesh(int type, int length, int detail, double pitch, con
 
 Result<Decomposition> PartMaker::decompose(const Hierarchy &hierarchy, const Job &job) const
 {
+   const LatticeSpec &spec = hierarchy.lattice().spec();
+   if (spec.aspect != std::array<double, 3>{1, 1, 1})
+      return Error{ErrorCode::unsupported,
+                   "parts have the lattice's own proportions; set its aspect to 1, 1, 1 or export cells"};
    auto cells = gatherCells(hierarchy, job);
    if (!cells)
       return cells.error();
-   const diatom_cells record = cells->record(hierarchy.lattice().spec().pitch);
+   const diatom_cells record = cells->record(spec);
    PartBatches batches(*cells, types());
    const diatom_part_sink sink = batches.sink();
    const Status status = m_self->instance->call("decompose", job, [&](const diatom_call *call) {

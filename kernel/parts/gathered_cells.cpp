@@ -98,19 +98,15 @@ void findRuns(const Lattice &lattice, const std::vector<Gathered> &cells, Gather
 
 } // namespace
 
-diatom_cells GatheredCells::record(double pitch) const
+diatom_cells GatheredCells::record(const LatticeSpec &lattice) const
 {
    static_assert(sizeof(Index) == 3 * sizeof(std::int32_t));
-   return {sizeof(diatom_cells),
-           static_cast<std::int64_t>(index.size()),
-           pitch,
-           index.empty() ? nullptr : &index.front().x,
-           site.data(),
-           material.data(),
-           supercell.data(),
-           place.data(),
-           position.data(),
-           orientation.data()};
+   return {sizeof(diatom_cells), static_cast<std::int64_t>(index.size()),
+           lattice.pitch,        index.empty() ? nullptr : &index.front().x,
+           site.data(),          material.data(),
+           supercell.data(),     place.data(),
+           position.data(),      orientation.data(),
+           lattice.id.c_str()};
 }
 
 Result<GatheredCells> gatherCells(const Hierarchy &hierarchy, const Job &job)

@@ -18,7 +18,8 @@ struct GatheredCells
    std::vector<double> position, orientation;
 
    /// Points into this object.
-   diatom_cells record(double pitch) const;
+   /// Points into this and into `lattice`.
+   diatom_cells record(const LatticeSpec &lattice) const;
 };
 
 /// Refuses more cells than the plugin contract can number and orientations that a cell's shape does not have.

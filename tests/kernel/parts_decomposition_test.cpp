@@ -1,6 +1,7 @@
 // Cells into parts through the kernel: runs, composites, coverage, and what is refused.
 #include "parts/decomposition.h"
 #include "parts/part_batches.h"
+#include "parts/part_list.h"
 #include "support/scenes.h"
 
 #include <algorithm>
@@ -103,6 +104,12 @@ class DecompositionTest : public QObject
 private slots:
    void everyCellBecomesOnePart_data();
    void everyCellBecomesOnePart();
+   void everyWayCoversEveryCellExactly_data();
+   void everyWayCoversEveryCellExactly();
+   void crossesAreSharedByTheTwoCellsTheyJoin();
+   void stretchedLatticesAreRefused();
+   void bricksOfAnotherHeightAreRefused();
+   void partsAreCountedWithTheirMass();
    void runsBecomeBricksOfTheirLength();
    void aRunThatLostACellFallsIntoTwo();
    void compositesAndEditOrderMakeNoDifference();
@@ -140,6 +147,162 @@ void DecompositionTest::everyCellBecomesOnePart()
    std::sort(cells.begin(), cells.end());
    QVERIFY(parts->covered == cells);
    QVERIFY(parts->left.empty());
+}
+
+void DecompositionTest::everyWayCoversEveryCellExactly_data()
+{
+   QTest::addColumn<QString>("id");
+   QTest::addColumn<QString>("lattice");
+   QTest::addColumn<double>("height");
+   for (const Offer &offer : test::catalogue()->offers(DIATOM_PARTS_1)) {
+      const auto maker = PartMaker::make(*test::catalogue(), offer.provided->id, {}, "", Job());
+      if (!maker)
+         qFatal("%s", maker.error().message.c_str());
+      const QString id = QString::fromStdString(offer.provided->id);
+      const double height = id.contains("lego") ? 1.17 : id.contains("dna") ? 1.08 : 1.28;
+      for (const std::string &lattice : (*maker)->lattices())
+         QTest::addRow("%s on %s", offer.provided->id.c_str(), lattice.c_str())
+             << id << QString::fromStdString(lattice) << height;
+   }
+}
+
+// The host refuses a decomposition that leaves a cell, covers one twice or in part: here every plugin has
+// random cells in three materials, and a composite placed many times, to cover.
+void DecompositionTest::everyWayCoversEveryCellExactly()
+{
+   QFETCH(QString, id);
+   QFETCH(QString, lattice);
+   QFETCH(double, height);
+   test::Scene scene(lattice.toStdString());
+   const bool runs = scene.lattice->hasSupercells();
+   if (runs) {
+      scene.model.lattice.values["height"] = height;
+      scene.lattice = *Lattice::make(*test::catalogue(), scene.model.lattice, Job());
+   }
+   Definition block{"block", "block", {}, {}};
+   std::mt19937 random(5);
+   std::size_t wanted = 0;
+   const auto put = [&](CellArray &cells, Index at) {
+      const auto material = static_cast<MaterialIndex>(1 + random() % 3);
+      const Index step = runs ? scene.lattice->supercellStep(scene.lattice->site(at)) : Index{};
+      const int length = runs ? 1 + static_cast<int>(random() % 2) : 1;
+      for (int k = 0; k < length; ++k)
+         if (!cells.at(at + step * k).empty())
+            return;
+      if (runs)
+         setRun(cells, *scene.lattice, at, length, material);
+      else
+         cells.set(at, {material,
+                        static_cast<std::uint8_t>(random() % scene.lattice->shape(0).rotations.size()), 0});
+      wanted += static_cast<std::size_t>(length);
+   };
+   for (const Index i : test::blob(*scene.lattice, 200, 3))
+      put(scene.model.root.cells, i);
+   const std::size_t single = wanted;
+   for (const Index i : test::blob(*scene.lattice, 30, 4))
+      put(block.body.cells, i);
+   const std::size_t each = wanted - single;
+   const auto definition = scene.model.setDefinition(block);
+   DIATOM_VERIFY_OK(definition);
+   constexpr int kCopies = 5; // far from the blob and from each other, on the same parity
+   for (int k = 1; k <= kCopies; ++k)
+      scene.model.root.instances.insert({*definition, Index{1200 * k, 0, 1200 * k}, 0});
+   const auto maker = PartMaker::make(*test::catalogue(), id.toStdString(), {}, lattice.toStdString(), Job());
+   DIATOM_VERIFY_OK(maker);
+   const auto parts = (*maker)->decompose(scene.hierarchy(), Job());
+   DIATOM_VERIFY_OK(parts);
+   QVERIFY(parts->left.empty());
+   // And back: the cells that the parts tell are exactly those of the design.
+   std::set<Index> covered(parts->covered.begin(), parts->covered.end());
+   QCOMPARE(covered.size(), single + kCopies * each);
+   for (const Index i : covered)
+      QVERIFY(!scene.hierarchy().at(i).empty());
+   double shares = 0;
+   for (const Part &part : parts->parts)
+      shares += static_cast<double>(part.cells) / parts->types[static_cast<std::size_t>(part.type)].share;
+   QVERIFY(std::abs(shares - static_cast<double>(covered.size())) < 1e-6); // sums of a few thousand shares
+}
+
+void DecompositionTest::crossesAreSharedByTheTwoCellsTheyJoin()
+{
+   const std::string id = "org.diatom_cad.lattice.octahedron_vertex";
+   test::Scene scene(id);
+   constexpr int n = 4;
+   scene.model.root.cells.fill({{0, 0, 0}, {n - 1, n - 1, n - 1}}, {1, 0, 0});
+   const auto maker =
+       PartMaker::make(*test::catalogue(), "org.diatom_cad.parts.octahedron_crosses", {}, id, Job());
+   DIATOM_VERIFY_OK(maker);
+   const auto count = [&](int type) {
+      const auto parts = (*maker)->decompose(scene.hierarchy(), Job());
+      return parts ? std::count_if(parts->parts.begin(), parts->parts.end(),
+                                   [&](const Part &part) { return part.type == type; })
+                   : -1;
+   };
+   // One per inner corner, half a one per corner of the outside: three whole ones per cell in all.
+   QCOMPARE(count(0), 3 * n * n * (n - 1));
+   QCOMPARE(count(1), 6 * n * n);
+   // Cells of another material share no part with their neighbours.
+   scene.model.root.cells.set({1, 1, 1}, {2, 0, 0});
+   QCOMPARE(count(0), 3 * n * n * (n - 1) - 6);
+   QCOMPARE(count(1), 6 * n * n + 12);
+}
+
+void DecompositionTest::stretchedLatticesAreRefused()
+{
+   test::Scene scene("org.diatom_cad.lattice.cube");
+   scene.model.lattice.aspect = {1, 1, 2};
+   scene.lattice = *Lattice::make(*test::catalogue(), scene.model.lattice, Job());
+   scene.model.root.cells.set({0, 0, 0}, {1, 0, 0});
+   const auto parts = makerFor(scene.model.lattice.id)->decompose(scene.hierarchy(), Job());
+   QVERIFY(!parts);
+   QVERIFY(parts.error().message.find("aspect") != std::string::npos);
+}
+
+void DecompositionTest::bricksOfAnotherHeightAreRefused()
+{
+   test::Scene scene("org.diatom_cad.lattice.gik"); // 1.28
+   scene.model.root.cells.set({0, 0, 1}, {1, 0, 0});
+   for (const char *name : {"gik_lego", "gik_dna_blocks", "gik_dna_strands"}) {
+      const auto maker = PartMaker::make(*test::catalogue(), "org.diatom_cad.parts." + std::string(name), {},
+                                         scene.model.lattice.id, Job());
+      DIATOM_VERIFY_OK(maker);
+      const auto parts = (*maker)->decompose(scene.hierarchy(), Job());
+      QVERIFY(!parts);
+      QVERIFY2(parts.error().message.find("height") != std::string::npos, parts.error().message.c_str());
+   }
+}
+
+void DecompositionTest::partsAreCountedWithTheirMass()
+{
+   // Two plates of 4 cells and one of 2, and one of 4 in another material, at DMDesign's pitch.
+   test::Scene scene("org.diatom_cad.lattice.gik", 1.27e-3);
+   Material heavy = scene.model.material(2);
+   heavy.density = 8500;
+   DIATOM_VERIFY_OK(scene.model.setMaterial(heavy));
+   setRun(scene.model.root.cells, *scene.lattice, {0, 0, 0}, 4, 1);
+   setRun(scene.model.root.cells, *scene.lattice, {1, 0, 0}, 4, 1);
+   setRun(scene.model.root.cells, *scene.lattice, {2, 0, 0}, 2, 1);
+   setRun(scene.model.root.cells, *scene.lattice, {0, 0, 1}, 4, 2);
+   const auto maker = makerFor(scene.model.lattice.id);
+   const auto hierarchy = scene.hierarchy();
+   const auto parts = maker->decompose(hierarchy, Job());
+   DIATOM_VERIFY_OK(parts);
+   const auto rows = countParts(*maker, *parts, hierarchy, Job());
+   DIATOM_VERIFY_OK(rows);
+   QCOMPARE(rows->size(), std::size_t(3));
+   // dmdesign.md section 2: (1.27 L - 0.127) x 3.175 x 0.254 mm less two slots of 0.254 x 0.7744 per cell.
+   const auto volume = [](int length) {
+      return ((1.27 * length - 0.127) * 3.175 - 2 * length * 0.254 * 0.7744) * 0.254 * 1e-9;
+   };
+   const auto holds = [&](const PartCount &row, int length, MaterialIndex material, std::int64_t count,
+                          double mass) {
+      return row.type == 0 && row.length == length && row.material == material && row.count == count &&
+             std::abs(row.volume / volume(length) - 1) < 1e-12 &&
+             std::abs(row.mass / mass - 1) < 1e-12; // rounding
+   };
+   QVERIFY(holds((*rows)[0], 2, 1, 1, 1000 * volume(2)));
+   QVERIFY(holds((*rows)[1], 4, 1, 2, 1000 * volume(4)));
+   QVERIFY(holds((*rows)[2], 4, 2, 1, 8500 * volume(4)));
 }
 
 void DecompositionTest::runsBecomeBricksOfTheirLength()

@@ -1,7 +1,7 @@
 // GIK micro-LEGO: a run of L cells is one upright plate with slots at every cell centre, cut from above and
 // below, into which the crossing plates of the next layers go. Measures: DMDesign's part, mm at its pitch
-// of 1.27 mm.
-#include <diatom/parts.hpp>
+// of 1.27 mm. The coarse mesh has no slots: the plates that cross there fill them.
+#include <diatom/part_shapes.hpp>
 
 #include <cmath>
 
@@ -45,9 +45,16 @@ PartMesh plate(const MeshRequest &request)
    if (request.length > kLongest)
       throw Failure(DIATOM_LIMIT,
                     "a brick of " + std::to_string(request.length) + " cells is too long to mesh");
-   const Outline outline(request.length);
    const double scale = request.pitch / kPitch;
    PartMesh mesh;
+   if (request.detail == 0) {
+      const double left = -kPitch / 2 + kInset, right = (request.length - 0.5) * kPitch - kInset,
+                   y = kThickness / 2;
+      Prisms(mesh, scale)
+          .add({-kHeight / 2, kHeight / 2}, {{{{left, -y}, {right, -y}, {right, y}, {left, y}}, 1}});
+      return mesh;
+   }
+   const Outline outline(request.length);
    for (const double x : outline.x)
       for (const double z : outline.z)
          for (const double y : {-kThickness / 2, kThickness / 2})
@@ -73,48 +80,12 @@ PartMesh plate(const MeshRequest &request)
    return mesh;
 }
 
-std::string where(const diatom_cells &cells, std::int64_t cell)
-{
-   const std::int32_t *index = cells.index + 3 * cell;
-   return std::to_string(index[0]) + " " + std::to_string(index[1]) + " " + std::to_string(index[2]);
-}
-
-/// Cells of each run in their order, runs by their first cell's place.
-std::vector<std::vector<std::int64_t>> runs(const Call &call, const diatom_cells &cells)
-{
-   std::vector<std::vector<std::int64_t>> of(static_cast<std::size_t>(cells.count));
-   for (std::int64_t i = 0; i < cells.count; ++i) {
-      pollEvery(call, i);
-      auto &run = of[static_cast<std::size_t>(cells.supercell[i])];
-      const auto place = static_cast<std::size_t>(cells.place[i]);
-      if (run.size() <= place)
-         run.resize(place + 1, -1);
-      run[place] = i;
-   }
-   return of;
-}
-
-/// Even layers (site 0) run along +y, odd ones along +x: dmdesign.md 1.3, the deployed rule. A plate turned
-/// within its layer could not be slotted, so a cell's own orientation has no say.
-Wxyz layerOrientation(std::int32_t site)
-{
-   return site == 0 ? Wxyz{std::sqrt(0.5), 0, 0, std::sqrt(0.5)} : Wxyz{1, 0, 0, 0};
-}
-
+/// A plate turned within its layer could not be slotted, so a cell's own orientation has no say.
 void bricks(const Call &call, const diatom_cells &cells, PartList &parts)
 {
-   for (const auto &run : runs(call, cells)) {
-      if (run.empty())
-         continue;
-      const std::int64_t first = run.front();
-      for (const std::int64_t cell : run)
-         if (cells.material[cell] != cells.material[first])
-            throw Failure(DIATOM_BAD_INPUT, "the brick that starts at cell " + where(cells, first) +
-                                                " has a second material at cell " + where(cells, cell) +
-                                                "; a brick is made of one");
-      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[first], cellPosition(cells, first),
-                layerOrientation(cells.site[first]), run);
-   }
+   for (const auto &run : runsOf(call, cells))
+      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[run.front()],
+                cellPosition(cells, run.front()), alongRun(cells.site[run.front()]), run);
 }
 
 PartSet gik(const Values &)
@@ -122,6 +93,7 @@ PartSet gik(const Values &)
    PartSet set;
    set.kinds = {{"brick", "GIK brick", 1}};
    set.lattices = {"org.diatom_cad.lattice.gik"};
+   set.details = 2;
    set.mesh = plate;
    set.decompose = bricks;
    return set;

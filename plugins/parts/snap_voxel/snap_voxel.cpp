@@ -1,7 +1,7 @@
 // Snap voxel: the frame of an octahedron, twelve struts between six node blocks, one part per cell. The
 // coarse mesh has DMDesign's measures; the fine one is our own: it stays within its own cell, so that
 // neighbours lie strut to strut, and snaps onto the voxel above with a peg.
-#include <diatom/parts.hpp>
+#include <diatom/part_shapes.hpp>
 
 #include <cmath>
 
@@ -155,13 +155,39 @@ PartMesh voxel(const MeshRequest &request)
    return mesh;
 }
 
+/// The mesh lies as the octahedra of octahedron_edge do; from there to those of other lattices.
+Wxyz turnFor(std::string_view lattice)
+{
+   const auto about = [](const Xyz &axis, double radians) -> Wxyz {
+      const double s = std::sin(radians / 2);
+      return {std::cos(radians / 2), s * axis[0], s * axis[1], s * axis[2]};
+   };
+   if (lattice == "org.diatom_cad.lattice.octahedron_vertex") // corners on the axes
+      return about({0, 0, 1}, std::acos(-1.0) / 4);
+   if (lattice == "org.diatom_cad.lattice.octahedron_edge_flat") // the peg's corner from +z over to -y
+      return about({1, 0, 0}, std::acos(std::sqrt(1.0 / 3)));
+   return {1, 0, 0, 0};
+}
+
+void oneVoxelPerCell(const Call &call, const diatom_cells &cells, PartList &parts)
+{
+   const Wxyz turn = turnFor(latticeOf(cells));
+   for (std::int64_t i = 0; i < cells.count; ++i) {
+      pollEvery(call, i);
+      parts.add(0, 1, cells.material[i], cellPosition(cells, i), turned(cellOrientation(cells, i), turn),
+                {i});
+   }
+}
+
 PartSet snapVoxel(const Values &)
 {
    PartSet set;
    set.kinds = {{"snap_voxel", "Snap voxel", 1}};
-   set.lattices = {"org.diatom_cad.lattice.octahedron_edge"};
+   set.lattices = {"org.diatom_cad.lattice.octahedron_edge", "org.diatom_cad.lattice.octahedron_edge_flat",
+                   "org.diatom_cad.lattice.octahedron_vertex"};
    set.details = 2;
    set.mesh = voxel;
+   set.decompose = oneVoxelPerCell;
    return set;
 }
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace diatom::sdk {
@@ -92,6 +93,12 @@ inline Wxyz cellOrientation(const diatom_cells &cells, std::int64_t cell)
 {
    const double *q = cells.orientation + 4 * cell;
    return {q[0], q[1], q[2], q[3]};
+}
+
+/// Id of the cells' lattice; empty when the host does not tell.
+inline std::string_view latticeOf(const diatom_cells &cells)
+{
+   return DIATOM_HAS(diatom_cells, &cells, lattice) && cells.lattice ? cells.lattice : "";
 }
 
 /// Polls for cancel every few thousand steps of a loop; ends the call when the user asked to stop.

@@ -38,6 +38,7 @@ typedef struct diatom_cells
    const int32_t *place;      /* its place in the run, from 0 */
    const double *position;    /* 3 per cell, metres */
    const double *orientation; /* 4 per cell: unit quaternion w x y z, cell frame to world */
+   const char *lattice;       /* id of the lattice; look with DIATOM_HAS, older hosts do not tell it */
 } diatom_cells;
 
 /* Triangle mesh in metres in the part's frame, outward. Copied by the sink at once. */
