@@ -4,6 +4,8 @@
 // free, or the other cell is of another material, a half cross with two struts stands in.
 #include <diatom/part_shapes.hpp>
 
+#include <algorithm>
+
 #include <array>
 #include <unordered_map>
 

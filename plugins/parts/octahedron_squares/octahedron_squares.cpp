@@ -3,6 +3,8 @@
 // the other the inner half, like boards halved into each other. All three are one part, turned.
 #include <diatom/part_shapes.hpp>
 
+#include <algorithm>
+
 using namespace diatom::sdk;
 
 namespace {
