@@ -301,7 +301,7 @@ private slots:
             QVERIFY(!hierarchy.hit(origin, direction, 0.5 * hit->distance).has_value());
          }
       }
-      QVERIFY2(hits > 50, qPrintable(QString::number(hits)));
+      QVERIFY2(hits > 25, qPrintable(QString::number(hits))); // tetrahedra leave five sixths of space empty
    }
    void takesOverWhatAnEditLeavesUnchanged_data() { lattices(); }
    void takesOverWhatAnEditLeavesUnchanged()

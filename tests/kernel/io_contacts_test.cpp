@@ -122,7 +122,7 @@ void ContactsTest::blobsAreManifoldsOfTheirVolume()
       QVERIFY2(faultOf(mesh).isEmpty(), qPrintable(faultOf(mesh)));
       QCOMPARE(mesh.materials.size(), mesh.triangles.size());
       // Sums of a few thousand rounded terms.
-      QVERIFY(std::abs(volumeOf(mesh) / (500 * scene.lattice->shape(0).volume) - 1) < 1e-9);
+      QVERIFY(std::abs(volumeOf(mesh) / test::cellVolume(scene.hierarchy()) - 1) < 1e-9);
       const auto again = solidOf(scene);
       QVERIFY(mesh.triangles == again.triangles && mesh.vertices == again.vertices);
    }

@@ -98,7 +98,6 @@ void GeometryTest::solidsOfMaterialsAreManifoldsOfTheirCells()
 {
    QFETCH(QString, lattice);
    const auto scene = blobScene(lattice.toStdString(), 300, 4);
-   const auto counts = scene.hierarchy().countByMaterial();
    const auto apart = geometryOf(scene);
    QCOMPARE(apart.solids.size(), std::size_t(3));
    for (std::size_t k = 0; k < 3; ++k) {
@@ -106,20 +105,20 @@ void GeometryTest::solidsOfMaterialsAreManifoldsOfTheirCells()
       QCOMPARE(solid.name, std::string(1, "abc"[k]));
       QCOMPARE(faultOf(solid.mesh), QString());
       // Sums of a few thousand rounded terms.
-      QVERIFY(std::abs(volumeOf(solid.mesh) / (double(counts[k + 1]) * scene.lattice->shape(0).volume) - 1) <
-              1e-9);
+      const double wanted = test::cellVolume(scene.hierarchy(), static_cast<MaterialIndex>(k + 1));
+      QVERIFY(std::abs(volumeOf(solid.mesh) / wanted - 1) < 1e-9);
    }
    GeometryOptions together;
    together.apart = false;
    const auto one = geometryOf(scene, together);
    QCOMPARE(one.solids.size(), std::size_t(1));
    QCOMPARE(faultOf(one.solids[0].mesh), QString());
-   QVERIFY(std::abs(volumeOf(one.solids[0].mesh) / (300 * scene.lattice->shape(0).volume) - 1) < 1e-9);
+   QVERIFY(std::abs(volumeOf(one.solids[0].mesh) / test::cellVolume(scene.hierarchy()) - 1) < 1e-9);
    GeometryOptions only;
    only.material = 2;
    const auto second = geometryOf(scene, only);
    QCOMPARE(second.solids.size(), std::size_t(1));
-   QCOMPARE(second.cells, counts[2]);
+   QCOMPARE(second.cells, scene.hierarchy().countByMaterial()[2]);
    QVERIFY(second.solids[0].mesh.triangles == apart.solids[1].mesh.triangles);
 }
 
@@ -187,7 +186,7 @@ void GeometryTest::aReaderFindsWhatWasWritten()
          readMost = readMost.cwiseMax(Vec3(facts.most.data()));
       }
       // Numbers of 24 bits, corners within 2^6 cells.
-      const double wanted = 200 * scene.lattice->shape(0).volume / (unit * unit * unit);
+      const double wanted = test::cellVolume(scene.hierarchy()) / (unit * unit * unit);
       QVERIFY2(std::abs(volume / wanted - 1) < 1e-5, qPrintable(QString::number(volume / wanted)));
       const auto expected = [&](const Vec3 &v) -> Vec3 { return gltf ? Vec3(v.x(), v.z(), -v.y()) : v; };
       const Vec3 a = expected(least) / unit, b = expected(most) / unit;

@@ -30,10 +30,11 @@ inline void addMatrix()
              << QString::fromStdString(offer.provided->id) << composite;
 }
 
-/// 500 cells at random, or a composite of composites that touch; three materials.
-inline Scene matrixScene(const std::string &lattice, bool composite)
+/// 500 cells at random, or a composite of composites that touch; three materials. With a height for lattices
+/// that have one.
+inline Scene matrixScene(const std::string &lattice, bool composite, double height = 0)
 {
-   Scene scene(lattice);
+   Scene scene(lattice, 1e-3, height > 0 ? Values{{"height", height}} : Values{});
    if (!composite) {
       for (const Index i : blob(*scene.lattice, 500, 17))
          scene.model.root.cells.set(i, {static_cast<MaterialIndex>(1 + floorMod(i.x + i.z, 3)), 0, 0});
@@ -52,18 +53,6 @@ inline Scene matrixScene(const std::string &lattice, bool composite)
       scene.model.root.instances.insert({*outerId, Index{0, 0, 2 * k * period[2]}, 0});
    scene.model.root.cells.set({-1, 0, 0}, {3, 0, 0});
    return scene;
-}
-
-inline double cellVolume(const Hierarchy &hierarchy)
-{
-   double sum = 0;
-   std::set<Index> seen; // instances may overlap
-   hierarchy.visit(hierarchy.bounds(), [&](Index i, Cell) {
-      if (seen.insert(i).second)
-         sum += hierarchy.lattice().shape(hierarchy.lattice().site(i)).volume;
-      return true;
-   });
-   return sum;
 }
 
 inline std::string fault(const Geometry &geometry)

@@ -34,9 +34,10 @@ struct Scene
    std::shared_ptr<const Lattice> lattice;
    Model model;
 
-   explicit Scene(const std::string &id, double pitch = 1e-3)
+   explicit Scene(const std::string &id, double pitch = 1e-3, Values values = {})
    {
       model.lattice.id = id;
+      model.lattice.values = std::move(values);
       model.lattice.pitch = pitch;
       auto made = Lattice::make(*catalogue(), model.lattice, Job());
       if (!made)
@@ -52,13 +53,16 @@ struct Scene
    Hierarchy hierarchy() const { return Hierarchy(lattice, model); }
 };
 
-/// Volume of all cells; they differ where a lattice has several shapes.
-inline double cellVolume(const Hierarchy &hierarchy)
+/// Volume of all cells, or those of one material; they differ where a lattice has several shapes, and count
+/// once where instances overlap.
+inline double cellVolume(const Hierarchy &hierarchy, MaterialIndex material = 0)
 {
    double volume = 0;
+   std::set<Index> seen;
    const Lattice &lattice = hierarchy.lattice();
-   hierarchy.visit(hierarchy.bounds(), [&](Index i, Cell) {
-      volume += lattice.shape(lattice.site(i)).volume;
+   hierarchy.visit(hierarchy.bounds(), [&](Index i, Cell cell) {
+      if ((material == 0 || cell.material == material) && seen.insert(i).second)
+         volume += lattice.shape(lattice.site(i)).volume;
       return true;
    });
    return volume;
