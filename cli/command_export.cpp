@@ -1,24 +1,20 @@
 // diatom export: the geometry of a design, of cells, parts or struts, whole or by material.
 #include "cli/commands.h"
+#include "cli/lengths.h"
 #include "cli/number_checks.h"
 
-#include "core/text.h"
 #include "io/geometry_file.h"
 #include "io/stl.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <array>
 #include <optional>
 #include <utility>
 
 namespace diatom::cli {
 
 namespace {
-
-constexpr std::array<std::pair<const char *, double>, 6> kUnits = {
-    {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}, {"in", 25.4e-3}}};
 
 /// Cells up to which contacts of an STL export are counted: a surface that takes a second and some 100 MB.
 constexpr std::uint64_t kMostCounted = 1'000'000;
@@ -36,29 +32,17 @@ struct ExportArguments
 std::vector<std::string> unitNames()
 {
    std::vector<std::string> names;
-   for (const auto &[name, metres] : kUnits)
+   for (const auto &[name, metres] : kLengthUnits)
       names.emplace_back(name);
    return names;
 }
 
 double metresOf(const std::string &unit)
 {
-   for (const auto &[name, metres] : kUnits)
+   for (const auto &[name, metres] : kLengthUnits)
       if (unit == name)
          return metres;
    return 1;
-}
-
-/// A positive length with a unit, or in `unit` without; in metres.
-std::optional<double> lengthOf(const std::string &text, const std::string &unit)
-{
-   const auto digits = text.find_last_of("0123456789.") + 1;
-   const std::string suffix = digits < text.size() ? text.substr(digits) : unit;
-   const auto number = parseNumber(text.substr(0, digits));
-   for (const auto &[name, metres] : kUnits)
-      if (suffix == name && number && *number > 0)
-         return *number * metres;
-   return {};
 }
 
 /// 0 for all of them.
@@ -212,7 +196,7 @@ private:
       options.beams = m_arguments.beams;
       options.sides = m_arguments.section == "square" ? 4 : m_arguments.sides.value_or(options.sides);
       if (!m_arguments.strutWidth.empty()) {
-         const auto width = lengthOf(m_arguments.strutWidth, m_unitName);
+         const auto width = parseLength(m_arguments.strutWidth, metresOf(m_unitName));
          if (!width)
             return Error{ErrorCode::usage,
                          fmt::format("--strut-width {}: give a positive length, as 0.4 or 0.4mm",

@@ -17,10 +17,10 @@ namespace diatom::cli {
 inline constexpr std::array<std::pair<std::string_view, double>, 6> kLengthUnits = {
     {{"mm", 1e-3}, {"cm", 1e-2}, {"um", 1e-6}, {"nm", 1e-9}, {"in", 25.4e-3}, {"m", 1}}};
 
-/// "2.5mm", "0.1 in", "mm" for one of them; without a unit metres. Nothing when it is no length above 0.
-inline std::optional<double> parseLength(std::string_view text)
+/// "2.5mm", "0.1 in", "mm" for one of them; a number alone is in `metres`. Nothing when it is no length above
+/// 0.
+inline std::optional<double> parseLength(std::string_view text, double metres = 1)
 {
-   double metres = 1;
    for (const auto &[name, unit] : kLengthUnits)
       if (text.ends_with(name)) {
          text.remove_suffix(name.size());
