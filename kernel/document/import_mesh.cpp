@@ -1,5 +1,6 @@
 #include "document/import_mesh.h"
 
+#include "cells/runs.h"
 #include "core/text.h"
 #include "io/mesh_faults.h"
 #include "io/mesh_read.h"
@@ -75,6 +76,7 @@ public:
       design.name = file.stem().string();
       design.model.lattice = m_lattice.spec();
       design.model.root.cells = *std::move(cells);
+      joinRuns(design.model.root.cells, m_lattice);
       return std::move(m_opened);
    }
 

@@ -25,8 +25,8 @@ struct MeshImport
    std::vector<std::pair<std::filesystem::path, std::string>> inside;
 };
 
-/// Notes tell what the mesh is, its faults, and what was assumed. Cells of lattices with super-cells stand
-/// alone.
+/// Notes tell what the mesh is, its faults, and what was assumed. On lattices of super-cells rows of cells
+/// become super-cells of the usual length.
 Result<Opened> importMesh(const std::filesystem::path &file, const MeshImport &options,
                           const Lattice &lattice, const Job &job);
 

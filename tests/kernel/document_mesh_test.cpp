@@ -1,4 +1,5 @@
 // Mesh files of other programs as designs: sizes, units, pieces and colours, and bad files.
+#include "cells/hierarchy.h"
 #include "core/file.h"
 #include "document/import_mesh.h"
 #include "io/mesh_read.h"
@@ -54,6 +55,7 @@ private slots:
    void piecesBecomeMaterialsWithTheirColours();
    void coloursOfVerticesBecomeMaterials();
    void anotherMeshTellsAnotherMaterial();
+   void bricksAreAsLongAsUsual();
    void badFilesAreRefused_data();
    void badFilesAreRefused();
    void aSolidSmallerThanACellIsRefusedWithItsSize();
@@ -180,6 +182,29 @@ void DocumentMeshTest::anotherMeshTellsAnotherMaterial()
    QCOMPARE(counts[model.material("pin")], 10U); // outside of the main mesh it fills nothing
    QCOMPARE(counts[model.material("core")], 216U - 6);
    QCOMPARE(counts[model.material("shell")], 1000U - 216 - 4);
+}
+
+/// Rows of 10 cells in bricks of 4, 4 and 2; along y in even layers, along x in odd ones.
+void DocumentMeshTest::bricksAreAsLongAsUsual()
+{
+   LatticeSpec spec;
+   spec.id = "org.diatom_cad.lattice.gik";
+   const auto lattice = Lattice::make(*catalogue(), spec, Job()).value();
+   QCOMPARE(lattice->supercellDefault(), 4);
+   const auto opened =
+       importMesh(write("block.obj", objText(boxMesh({0, 0, 0}, {10, 10, 2.56}))), {}, *lattice, Job());
+   DIATOM_VERIFY_OK(opened);
+   const Hierarchy hierarchy(lattice, opened->design.model);
+   QCOMPARE(hierarchy.cells(), 200U);
+   for (int across = 0; across < 10; ++across) {
+      for (int k = 0; k < 10; ++k) {
+         const std::size_t wanted = k < 8 ? 4 : 2;
+         QCOMPARE(hierarchy.supercell({across, k, 0}).size(), wanted);
+         QCOMPARE(hierarchy.supercell({k, across, 1}).size(), wanted);
+      }
+      QVERIFY(hierarchy.supercell({across, 5, 0}).front() == (Index{across, 4, 0}));
+      QVERIFY(hierarchy.supercell({5, across, 1}).front() == (Index{4, across, 1}));
+   }
 }
 
 void DocumentMeshTest::badFilesAreRefused_data()
