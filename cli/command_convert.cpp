@@ -1,9 +1,11 @@
-// diatom convert: any readable file to a .diatom document; meshes become cells of a lattice on the way.
+// diatom convert: any readable file to a .diatom document or a file of another program; meshes become
+// cells of a lattice on the way.
 #include "cli/commands.h"
 #include "cli/lengths.h"
 #include "cli/number_checks.h"
 
 #include "core/file.h"
+#include "document/foreign.h"
 #include "document/import_mesh.h"
 #include "io/mesh_read.h"
 
@@ -19,7 +21,7 @@ namespace {
 
 struct ConvertOptions
 {
-   std::string in, out;
+   std::string in, out, format;
    bool packed = false;
    // Of meshes:
    MeshImport mesh;
@@ -54,14 +56,34 @@ Result<Opened> fillMesh(Context &context, const ConvertOptions &options)
    return importMesh(options.in, how, **lattice, context.job());
 }
 
-/// Opens without a lattice: a document whose lattice is not installed converts all the same.
+/// A file of another program, which needs the cells and not only the document.
+void writeForeign(Context &context, Opened opened, const ForeignFormat &format, const std::string &out)
+{
+   const auto input = context.prepare(std::move(opened));
+   if (!input)
+      return;
+   std::vector<std::string> notes;
+   const auto bytes = format.write(input->opened.design, *input->hierarchy, notes, context.job());
+   for (const std::string &text : notes)
+      context.note(text);
+   const Status saved = bytes ? writeFileAtomic(out, *bytes) : Status(bytes.error());
+   if (!saved)
+      context.fail({saved.error().code, fmt::format("{}: {}", out, saved.error().message)});
+}
+
+/// To a .diatom document it opens without a lattice: one whose lattice is not installed converts all the
+/// same.
 void convert(Context &context, const ConvertOptions &options)
 {
    const auto suffix = std::filesystem::path(options.out).extension().string();
-   if (options.out != "-" && suffix != ".diatom") {
-      context.fail({ErrorCode::usage,
-                    fmt::format("{}: only .diatom documents can be written; for meshes use `diatom export`",
-                                options.out)});
+   const ForeignFormat *foreign = foreignFormat(options.format, options.out);
+   if (!foreign && options.out != "-" && suffix != ".diatom") {
+      context.fail(
+          {ErrorCode::usage,
+           fmt::format(
+               "{}: documents end in .diatom, files of other programs in .vox, .vxc, .vxa, or in .json "
+               "with --format amoeba or dmdesign; for meshes use `diatom export`",
+               options.out)});
       return;
    }
    auto opened = isMeshFile(options.in) ? fillMesh(context, options) : openDesign(options.in, context.job());
@@ -71,6 +93,10 @@ void convert(Context &context, const ConvertOptions &options)
    }
    for (const auto &text : opened->notes)
       context.note(text);
+   if (foreign) {
+      writeForeign(context, *std::move(opened), *foreign, options.out);
+      return;
+   }
    Status saved;
    if (options.packed) {
       const auto bytes = writeDesign(opened->design, true, context.job());
@@ -86,16 +112,28 @@ void convert(Context &context, const ConvertOptions &options)
 
 void addConvert(CLI::App &app, Context &context)
 {
-   auto *command = app.add_subcommand("convert", "Turn any readable file into a .diatom document");
+   auto *command = app.add_subcommand(
+       "convert", "Turn any readable file into a .diatom document or a file of another program");
    const auto options = std::make_shared<ConvertOptions>();
    command
        ->add_option(
            "IN", options->in,
-           "a .diatom document, a file of AMOEBA or DMDesign, or a mesh (stl, obj, ply, 3mf, gltf, ...); - "
+           "a .diatom document, a file of AMOEBA, DMDesign, MagicaVoxel or VoxCAD, or a mesh (stl, obj, "
+           "ply, 3mf, gltf, ...); - "
            "reads standard input, but no mesh")
        ->required();
-   command->add_option("OUT", options->out, "the .diatom document to write; - writes to standard output")
+   command
+       ->add_option(
+           "OUT", options->out,
+           "the .diatom document, or the .vox, .vxc, .vxa or .json file of another program; - writes "
+           "to standard output")
        ->required();
+   std::vector<std::string> formats;
+   for (const ForeignFormat &format : foreignFormats())
+      formats.emplace_back(format.name);
+   command
+       ->add_option("--format", options->format, "another program's format, where the suffix does not say it")
+       ->check(CLI::IsMember(formats));
    command->add_flag("--packed", options->packed, "write the packed form even when small");
 
    auto *meshes = command->add_option_group("meshes", "How a mesh becomes cells");

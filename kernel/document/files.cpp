@@ -4,6 +4,8 @@
 #include "document/format.h"
 #include "document/importers.h"
 #include "document/json_text.h"
+#include "document/vox.h"
+#include "document/voxcad.h"
 
 #include <fmt/format.h>
 
@@ -83,7 +85,8 @@ Result<Opened> readText(std::string_view text, const Entries &blocks, const std:
                             kMostText));
    const auto start = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
    if (start == std::string_view::npos)
-      return unreadable(name, "it is empty; name a .diatom document or a file of AMOEBA or DMDesign");
+      return unreadable(
+          name, "it is empty; name a .diatom document or a file of AMOEBA, DMDesign, MagicaVoxel or VoxCAD");
    if (text[start] != '{')
       return unreadable(
           name,
@@ -118,6 +121,10 @@ Result<Opened> openDesign(const std::filesystem::path &file, const Job &job)
 Result<Opened> readDesign(std::string_view bytes, const std::string &name, const Job &job)
 {
    try {
+      if (bytes.starts_with(kVoxStart))
+         return readVox(bytes, name, job);
+      if (isVoxcad(bytes))
+         return readVoxcad(bytes, name, job);
       if (!bytes.starts_with(kZipStart))
          return readText(bytes, {}, name, job);
       auto entries = readArchive(bytes, name, kMostEntries, kMostPacked);

@@ -16,7 +16,7 @@ namespace diatom {
 struct Opened
 {
    Design design;
-   std::string format;             // "diatom", "amoeba", "dmdesign"
+   std::string format;             // "diatom", "amoeba", "dmdesign", "vox", "vxc", "vxa"
    std::vector<std::string> notes; // kept-but-unknown keys, assumptions made on import
 };
 

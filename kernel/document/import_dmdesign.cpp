@@ -1,5 +1,6 @@
 // DMDesign's assemblies and composite definitions, with the rules of its deployed version.
 #include "document/cell_text.h"
+#include "document/dmdesign_names.h"
 #include "document/importers.h"
 
 #include "core/text.h"
@@ -16,36 +17,7 @@ namespace diatom {
 
 namespace {
 
-struct LatticeName
-{
-   const char *cell, *connection, *id; // the program's two keys, our lattice
-   std::array<double, 3> pitch;        // its "aspect ratio", as the program had it
-};
-
-const double kRoot2 = std::sqrt(2.0), kRow = std::sqrt(3.0) / 2, kLayer = 2 / std::sqrt(6.0);
-
-// The fourth and the eighth were in no menu of the program, but its files may name them.
-const LatticeName kLattices[] = {
-    {"cube", "face", "cube", {1, 1, 1}},
-    {"cube", "gik", "gik", {1, 1, 1}},
-    {"octa", "face", "octahedron_face", {1, kRow, kLayer}},
-    {"octa", "edge", "octahedron_edge_flat", {1, kRow, kLayer}},
-    {"octa", "edgeRot", "octahedron_edge", {1, 1, kRoot2 / 2}},
-    {"octa", "vertex", "octahedron_vertex", {kRoot2, kRoot2, kRoot2}},
-    {"tetra", "stacked", "tetrahedron_stacked", {1, kRow, kLayer}},
-    {"tetra", "vertex", "tetrahedron_vertex", {1, kRow, kLayer}},
-    {"truncatedCube", "face", "cuboctahedron", {kRoot2, kRoot2, kRoot2}},
-    {"kelvin", "face", "kelvin", {2 * kRoot2, 2 * kRoot2, 2 * kRoot2}},
-    {"hex", "face", "honeycomb", {2 * kRow, 1.5, 1}},
-    {"hex", "faceRot", "honeycomb_rotated", {3, 1, kRow}},
-};
-
-/// Height of a GIK cell over its width, by application.
-constexpr std::pair<const char *, double> kHeights[] = {
-    {"willGik", 1.28}, {"lego", 1.17}, {"dnaBricks", 1.08}};
-
-constexpr std::pair<const char *, double> kUnits[] = {
-    {"inches", 0.0254}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
+using dmdesign::kHeights, dmdesign::kLattices, dmdesign::kUnits;
 
 constexpr int kLongestBrick = 100'000;
 
@@ -97,7 +69,7 @@ private:
       const auto cell = assembly.textOr("cellType", "cube"),
                  connection = assembly.textOr("connectionType", "face");
       const auto *found =
-          std::find_if(std::begin(kLattices), std::end(kLattices), [&](const LatticeName &name) {
+          std::find_if(std::begin(kLattices), std::end(kLattices), [&](const dmdesign::LatticeName &name) {
              return cell == name.cell && connection == name.connection;
           });
       if (found == std::end(kLattices)) {

@@ -1,5 +1,6 @@
 // glTF 2.0, binary (.glb) or JSON that holds its numbers as base64 (.gltf). No normals: readers then shade
 // flat (specification 3.7.2.1), and triangles share their vertices.
+#include "core/base64.h"
 #include "core/file.h"
 #include "io/geometry_writers.h"
 
@@ -22,21 +23,6 @@ double linear(std::uint8_t part)
 {
    const double c = part / 255.0;
    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
-}
-
-std::string base64(const std::string &bytes)
-{
-   static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-   std::string text;
-   text.reserve((bytes.size() + 2) / 3 * 4);
-   for (std::size_t i = 0; i < bytes.size(); i += 3) {
-      std::uint32_t group = 0;
-      for (std::size_t k = 0; k < 3; ++k)
-         group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-      for (std::size_t k = 0; k < 4; ++k)
-         text += i + k <= bytes.size() ? kDigits[group >> (18 - 6 * k) & 63] : '=';
-   }
-   return text;
 }
 
 class GltfWriter
@@ -78,7 +64,7 @@ public:
    std::string text()
    {
       m_json["buffers"] = {{{"byteLength", m_bytes.size()},
-                            {"uri", "data:application/octet-stream;base64," + base64(m_bytes)}}};
+                            {"uri", "data:application/octet-stream;base64," + toBase64(m_bytes)}}};
       return m_json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
    }
 

@@ -1,0 +1,44 @@
+#include "document/foreign.h"
+
+#include "document/earlier_programs.h"
+#include "document/vox.h"
+#include "document/voxcad.h"
+
+#include <algorithm>
+
+namespace diatom {
+
+namespace {
+
+template<bool world>
+Result<std::string> voxcad(const Design &design, const Hierarchy &hierarchy, std::vector<std::string> &notes,
+                           const Job &job)
+{
+   return writeVoxcad(design, hierarchy, world, notes, job);
+}
+
+constexpr ForeignFormat kFormats[] = {
+    {"vox", ".vox", "MagicaVoxel", writeVox},         {"vxc", ".vxc", "VoxCAD", voxcad<false>},
+    {"vxa", ".vxa", "VoxCAD", voxcad<true>},          {"amoeba", ".json", "AMOEBA", writeAmoeba},
+    {"dmdesign", ".json", "DMDesign", writeDmdesign},
+};
+
+} // namespace
+
+std::span<const ForeignFormat> foreignFormats() { return kFormats; }
+
+const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem::path &file)
+{
+   const std::string suffix = file.extension().string();
+   const ForeignFormat *found = nullptr;
+   for (const ForeignFormat &format : kFormats) {
+      if (!name.empty() ? name == format.name : suffix == format.suffix) {
+         if (found)
+            return nullptr; // several programs share it
+         found = &format;
+      }
+   }
+   return found;
+}
+
+} // namespace diatom
