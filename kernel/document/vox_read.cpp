@@ -244,7 +244,7 @@ private:
    {
       auto &notes = m_opened.notes;
       notes.push_back(fmt::format("a .vox file says neither sizes nor what colours are made of: cells are {} "
-                                  "m, materials as light as water",
+                                  "m, materials as dense as water",
                                   kVoxPitch));
       if (m_hidden > 0)
          notes.push_back(fmt::format("{} hidden groups or models were left out", m_hidden));

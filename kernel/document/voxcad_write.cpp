@@ -8,6 +8,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace diatom {
@@ -230,6 +231,11 @@ private:
       if (more || (!world && !setup.supports.empty()))
          m_notes.push_back(world ? "drives, loads, starts and sources are lost"
                                  : "supports and all else of the simulation are lost; .vxa keeps some of it");
+      const double lowest = m_hierarchy.lattice().position(m_bounds.min).z() -
+                            0.5 * model.lattice.pitch * model.lattice.aspect[2];
+      if (world && setup.ground.present &&
+          std::abs(setup.ground.height - lowest) > 1e-6 * model.lattice.pitch)
+         m_notes.push_back("VoxCAD's floor lies right under the lowest cell: the ground was moved there");
       if (world && (setup.gravity[0] != 0 || setup.gravity[1] != 0))
          m_notes.push_back("gravity along x and y is lost: VoxCAD's points along z");
    }

@@ -1,17 +1,19 @@
 #include "io/mesh_read.h"
 
+#include "core/archive.h"
 #include "core/child.h"
+#include "core/file.h"
 #include "io/mesh_pack.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <new>
 
 #ifdef DIATOM_ASSIMP
 #include <assimp/Importer.hpp>
-#include <assimp/ProgressHandler.hpp>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -22,6 +24,9 @@ namespace diatom {
 
 namespace {
 
+constexpr std::size_t kMostEntries = 100'000;                   // of a 3MF file
+constexpr std::uint64_t kMostUnpacked = std::uint64_t{4} << 30; // bytes
+
 /// Lower case, without the dot.
 std::string suffixOf(const std::filesystem::path &file)
 {
@@ -31,11 +36,39 @@ std::string suffixOf(const std::filesystem::path &file)
    return suffix.empty() ? suffix : suffix.substr(1);
 }
 
+/// What the file itself says in the first tag of its model, which the library passes over.
+double unitOf3mf(const std::filesystem::path &file)
+{
+   constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {{{"micron", 1e-6},
+                                                                           {"millimeter", 1e-3},
+                                                                           {"centimeter", 1e-2},
+                                                                           {"inch", 25.4e-3},
+                                                                           {"foot", 0.3048},
+                                                                           {"meter", 1}}};
+   const auto bytes = readFile(file);
+   const auto entries = bytes ? readArchive(*bytes, file.string(), kMostEntries, kMostUnpacked)
+                              : Result<Entries>(bytes.error());
+   if (!entries)
+      return 1e-3; // reading the mesh says why
+   for (const auto &[name, content] : *entries) {
+      if (!name.ends_with(".model"))
+         continue;
+      const std::string_view head =
+          std::string_view(content).substr(0, content.find('>', content.find("<model")));
+      for (const auto &[unit, metres] : kUnits)
+         if (head.find(fmt::format("unit=\"{}\"", unit)) != std::string_view::npos)
+            return metres;
+   }
+   return 1e-3;
+}
+
 } // namespace
 
 double customaryUnit(const std::filesystem::path &file)
 {
    const std::string suffix = suffixOf(file);
+   if (suffix == "3mf")
+      return unitOf3mf(file);
    return suffix == "gltf" || suffix == "glb" ? 1 : 1e-3;
 }
 
@@ -140,12 +173,23 @@ private:
                          std::string_view(name.C_Str()) != AI_DEFAULT_MATERIAL_NAME;
       const bool plain = std::string_view(mesh.mName.C_Str()) == "defaultobject"; // of its OBJ reader
       piece.name = named ? name.C_Str() : plain ? "" : mesh.mName.C_Str();
+      if (m_read.format == "3mf")
+         piece.name = withoutNumber(piece.name);
       aiColor4D color;
       piece.colored = named && (material.Get(AI_MATKEY_BASE_COLOR, color) == AI_SUCCESS ||
                                 material.Get(AI_MATKEY_COLOR_DIFFUSE, color) == AI_SUCCESS);
       if (piece.colored)
          piece.color = colorOf(color);
       return numberOf(piece);
+   }
+
+   /// The 3MF reader puts "id", a number and "_" before the file's own name.
+   static std::string withoutNumber(const std::string &name)
+   {
+      const auto end = name.find_first_not_of("0123456789", 2);
+      return name.starts_with("id") && end != std::string::npos && end > 2 && name[end] == '_'
+                 ? name.substr(end + 1)
+                 : name;
    }
 
    /// The piece of a face whose corners are coloured: that of their mean.

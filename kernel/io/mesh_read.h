@@ -22,7 +22,8 @@ struct MeshRead
 bool canReadMeshes();
 /// Whether the suffix is one of a mesh format that is read.
 bool isMeshFile(const std::filesystem::path &file);
-/// Metres per unit of numbers in such a file where the format says so (glTF: 1) or custom does (millimetres).
+/// Metres per unit of numbers in such a file: what the file says (3MF) or the format (glTF: 1), else
+/// millimetres by custom.
 double customaryUnit(const std::filesystem::path &file);
 
 /// `unit` is metres per number in the file. Transformations of the file's scene are applied; points and lines

@@ -2,9 +2,10 @@
 #include "cells/hierarchy.h"
 #include "core/file.h"
 #include "document/import_mesh.h"
+#include "io/geometry_file.h"
 #include "io/mesh_read.h"
 #include "support/meshes.h"
-#include "support/support.h"
+#include "support/scenes.h"
 
 #include <fmt/format.h>
 
@@ -50,6 +51,7 @@ class DocumentMeshTest : public QObject
 private slots:
    void init();
    void millimetresAreTheCustomAndInchesCanBeTold();
+   void threeMfTellsItsUnitAndItsMaterials();
    void itIsScaledToASize();
    void placeIsKeptOnlyWhenAsked();
    void piecesBecomeMaterialsWithTheirColours();
@@ -95,6 +97,26 @@ void DocumentMeshTest::millimetresAreTheCustomAndInchesCanBeTold()
    const auto large = open(file, 25.4e-3 / 2, inches);
    DIATOM_VERIFY_OK(large);
    QCOMPARE(large->design.model.root.cells.count(), 960U);
+}
+
+void DocumentMeshTest::threeMfTellsItsUnitAndItsMaterials()
+{
+   Scene scene("org.diatom_cad.lattice.cube");
+   scene.model.root.cells.fill({{0, 0, 0}, {5, 2, 1}}, {1, 0, 0});
+   scene.model.root.cells.fill({{6, 0, 0}, {9, 2, 1}}, {2, 0, 0});
+   const auto geometry = makeGeometry(scene.hierarchy(), nullptr, {}, Job());
+   DIATOM_VERIFY_OK(geometry);
+   for (const double unit : {1e-6, 1e-3, 1e-2, 25.4e-3, 1.0}) {
+      const std::filesystem::path file = m_dir.filePath("bar.3mf").toStdString();
+      DIATOM_VERIFY_OK(writeGeometry(*geometry, GeometryFormat::threeMf, unit, file, Job()));
+      const auto opened = open(file, 1e-3);
+      DIATOM_VERIFY_OK(opened);
+      const Model &model = opened->design.model;
+      QVERIFY(model.root.cells.bounds() == (Box{{0, 0, 0}, {9, 2, 1}}));
+      QCOMPARE(model.root.cells.at({5, 2, 1}).material, model.material("a"));
+      QCOMPARE(model.root.cells.at({6, 0, 0}).material, model.material("b"));
+      QVERIFY(model.material("a") != 0 && model.material("b") != 0);
+   }
 }
 
 void DocumentMeshTest::itIsScaledToASize()
