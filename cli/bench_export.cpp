@@ -75,7 +75,7 @@ Status exportStl(Measure &measure, const Model &model)
       return lattice.error();
    std::error_code failed;
    const fs::path folder = fs::temp_directory_path(failed) / "diatom-bench-export";
-   if (const Status made = makeFolder(folder); !made)
+   if (Status made = makeFolder(folder); !made)
       return made;
    const fs::path file = folder / "bench.stl", copy = folder / "plain.stl";
    Status status;

@@ -22,9 +22,9 @@ struct EffectsOptions
 
 Status writeEffects(const EffectsStudy &study, const std::filesystem::path &folder)
 {
-   if (const Status made = makeFolder(folder); !made)
+   if (Status made = makeFolder(folder); !made)
       return made;
-   if (const Status table = writeFileAtomic(folder / "effects.csv", effectsCsv(study)); !table)
+   if (Status table = writeFileAtomic(folder / "effects.csv", effectsCsv(study)); !table)
       return table;
    return writeFileAtomic(folder / "effects.json", effectsJson(study).dump(2) + "\n");
 }

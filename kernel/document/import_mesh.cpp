@@ -151,7 +151,7 @@ private:
    {
       const auto &pieces = m_solid.mesh.pieces;
       if (!m_options.material.empty()) {
-         if (const Status status = add(m_options.material, {}); !status)
+         if (Status status = add(m_options.material, {}); !status)
             return status;
       } else {
          for (std::size_t k = 0; k < pieces.size(); ++k) {
@@ -161,9 +161,9 @@ private:
                                 pieces[k].color[2]);
             if (id.empty())
                id = pieces.size() == 1 ? "solid" : fmt::format("solid-{}", k + 1);
-            if (m_opened.design.model.material(id) != 0)
+            while (m_opened.design.model.material(id) != 0)
                id += fmt::format("-{}", k + 1);
-            if (const Status status = add(id, pieces[k]); !status)
+            if (Status status = add(id, pieces[k]); !status)
                return status;
          }
          if (pieces.size() > 1)
@@ -175,7 +175,7 @@ private:
             m_otherMaterials.push_back(known);
             continue;
          }
-         if (const Status status = add(id, {}); !status)
+         if (Status status = add(id, {}); !status)
             return status;
          m_otherMaterials.push_back(m_materials.back());
          m_materials.pop_back();

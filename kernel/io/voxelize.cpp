@@ -137,8 +137,8 @@ private:
    void look(Block &block) const
    {
       const Box &whole = block.box;
-      const auto sizeY = static_cast<std::size_t>(whole.max.y - whole.min.y + 1),
-                 sizeZ = static_cast<std::size_t>(whole.max.z - whole.min.z + 1);
+      const std::size_t sizeY = std::size_t{1} + static_cast<std::size_t>(whole.max.y - whole.min.y),
+                        sizeZ = std::size_t{1} + static_cast<std::size_t>(whole.max.z - whole.min.z);
       std::vector<std::int32_t> triangles;
       forBlocks(whole, kSmall, [&](const Box &part) {
          std::optional<bool> all;
