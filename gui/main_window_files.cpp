@@ -74,8 +74,9 @@ void MainWindow::chooseAndOpen()
 {
    if (!mayDiscard())
       return;
-   const QString file = QFileDialog::getOpenFileName(this, tr("Open"), lastFolder("design"),
-                                                     tr("Designs (*.diatom *.json);;All files (*)"));
+   const QString file =
+       QFileDialog::getOpenFileName(this, tr("Open"), lastFolder("design"),
+                                    tr("Designs (*.diatom *.json *.vox *.vxc *.vxa);;All files (*)"));
    if (file.isEmpty())
       return;
    rememberFolder("design", file);

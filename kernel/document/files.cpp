@@ -6,6 +6,7 @@
 #include "document/json_text.h"
 #include "document/vox.h"
 #include "document/voxcad.h"
+#include "io/mesh_read.h"
 
 #include <fmt/format.h>
 
@@ -91,7 +92,7 @@ Result<Opened> readText(std::string_view text, const Entries &blocks, const std:
       return unreadable(
           name,
           fmt::format("byte {}: it is no design: neither JSON nor a zip begins like this; name a .diatom "
-                      "document or a file of AMOEBA or DMDesign",
+                      "document or a file of AMOEBA, DMDesign, MagicaVoxel or VoxCAD",
                       start + 1));
    auto json = parseJson(text, name);
    if (!json)
@@ -111,6 +112,12 @@ bool beginsAsZip(const std::filesystem::path &file)
 
 Result<Opened> openDesign(const std::filesystem::path &file, const Job &job)
 {
+   if (isMeshFile(file))
+      return unreadable(
+          file.string(),
+          fmt::format("it is a mesh and no design; fill it with cells: diatom convert {} OUT.diatom "
+                      "--pitch 1mm",
+                      file.filename().string()));
    const bool text = file != "-" && !beginsAsZip(file);
    auto bytes = readFile(file, text ? kMostText : kMostPacked);
    if (!bytes)
