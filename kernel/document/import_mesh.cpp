@@ -4,6 +4,7 @@
 #include "core/text.h"
 #include "io/mesh_faults.h"
 #include "io/mesh_read.h"
+#include "io/point_numbers.h"
 
 #include <fmt/format.h>
 
@@ -206,11 +207,16 @@ private:
    void splitPieces()
    {
       std::vector<Solid> bodies(m_solid.mesh.pieces.size());
-      for (Solid &body : bodies)
-         body.mesh.vertices = m_solid.mesh.vertices;
+      std::vector<PointNumbers> numbers(bodies.size());
       for (std::size_t k = 0; k < m_solid.mesh.triangles.size(); ++k) {
-         auto &body = bodies[static_cast<std::size_t>(m_solid.mesh.piece[k])].mesh;
-         body.triangles.push_back(m_solid.mesh.triangles[k]);
+         const auto piece = static_cast<std::size_t>(m_solid.mesh.piece[k]);
+         TriangleMesh &body = bodies[piece].mesh;
+         std::array<std::int32_t, 3> corners{};
+         for (std::size_t c = 0; c < 3; ++c)
+            corners[c] = static_cast<std::int32_t>(numbers[piece].number(
+                m_solid.mesh.vertices[static_cast<std::size_t>(m_solid.mesh.triangles[k][c])],
+                body.vertices));
+         body.triangles.push_back(corners);
       }
       const bool solids = std::all_of(bodies.begin(), bodies.end(),
                                       [](const Solid &body) { return findFaults(body.mesh).closed(); });

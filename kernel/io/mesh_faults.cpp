@@ -1,10 +1,11 @@
 #include "io/mesh_faults.h"
 
+#include "io/point_numbers.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -15,19 +16,13 @@ namespace {
 /// Number of the place of each vertex: the same for equal coordinates.
 std::vector<std::int32_t> placesOf(const std::vector<Vec3> &vertices)
 {
-   std::vector<std::int32_t> order(vertices.size()), place(vertices.size());
-   std::iota(order.begin(), order.end(), 0);
-   const auto at = [&](std::int32_t k) -> const Vec3 & { return vertices[static_cast<std::size_t>(k)]; };
-   std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-      const Vec3 &p = at(a), &q = at(b);
-      return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end());
-   });
-   for (std::size_t k = 0; k < order.size(); ++k) {
-      const bool same = k > 0 && at(order[k]) == at(order[k - 1]);
-      place[static_cast<std::size_t>(order[k])] =
-          same ? place[static_cast<std::size_t>(order[k - 1])] : order[k];
-   }
-   return place;
+   PointNumbers numbers;
+   std::vector<Vec3> points;
+   std::vector<std::int32_t> places;
+   places.reserve(vertices.size());
+   for (const Vec3 &vertex : vertices)
+      places.push_back(static_cast<std::int32_t>(numbers.number(vertex, points)));
+   return places;
 }
 
 /// One side of a triangle.
