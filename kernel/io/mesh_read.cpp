@@ -4,6 +4,7 @@
 #include "core/child.h"
 #include "core/file.h"
 #include "io/mesh_pack.h"
+#include "io/units_3mf.h"
 
 #include <fmt/format.h>
 
@@ -39,12 +40,6 @@ std::string suffixOf(const std::filesystem::path &file)
 /// What the file itself says in the first tag of its model, which the library passes over.
 double unitOf3mf(const std::filesystem::path &file)
 {
-   constexpr std::array<std::pair<std::string_view, double>, 6> kUnits = {{{"micron", 1e-6},
-                                                                           {"millimeter", 1e-3},
-                                                                           {"centimeter", 1e-2},
-                                                                           {"inch", 25.4e-3},
-                                                                           {"foot", 0.3048},
-                                                                           {"meter", 1}}};
    const auto bytes = readFile(file);
    const auto entries = bytes ? readArchive(*bytes, file.string(), kMostEntries, kMostUnpacked)
                               : Result<Entries>(bytes.error());
@@ -55,7 +50,7 @@ double unitOf3mf(const std::filesystem::path &file)
          continue;
       const std::string_view head =
           std::string_view(content).substr(0, content.find('>', content.find("<model")));
-      for (const auto &[unit, metres] : kUnits)
+      for (const auto &[metres, unit] : kUnits3mf)
          if (head.find(fmt::format("unit=\"{}\"", unit)) != std::string_view::npos)
             return metres;
    }

@@ -4,22 +4,16 @@
 #include "core/file.h"
 #include "core/text.h"
 #include "io/geometry_writers.h"
+#include "io/units_3mf.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 namespace diatom {
 
 namespace {
 
-constexpr std::array<std::pair<double, const char *>, 6> kUnits = {{{1e-6, "micron"},
-                                                                    {1e-3, "millimeter"},
-                                                                    {1e-2, "centimeter"},
-                                                                    {25.4e-3, "inch"},
-                                                                    {0.3048, "foot"},
-                                                                    {1, "meter"}}};
 constexpr const char *kTypes =
     R"(<?xml version="1.0" encoding="UTF-8"?>
 <Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"><Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/><Default Extension="model" ContentType="application/vnd.ms-package.3dmanufacturing-3dmodel+xml"/></Types>
@@ -51,7 +45,8 @@ std::string escaped(const std::string &text)
 class Model3mf
 {
 public:
-   Model3mf(const Geometry &geometry, double unit, const char *unitName) : m_geometry(geometry), m_unit(unit)
+   Model3mf(const Geometry &geometry, double unit, std::string_view unitName)
+       : m_geometry(geometry), m_unit(unit)
    {
       m_text = fmt::format(
           "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"{}\" xml:lang=\"en-US\" "
@@ -143,14 +138,14 @@ private:
 
 Written write3mf(const Geometry &geometry, double unit, const std::filesystem::path &file, const Job &job)
 {
-   const char *name = nullptr;
+   std::string_view name;
    std::string known;
-   for (const auto &[metres, word] : kUnits) {
+   for (const auto &[metres, word] : kUnits3mf) {
       if (unit == metres)
          name = word;
       known += (known.empty() ? "" : ", ") + std::string(word);
    }
-   if (!name)
+   if (name.empty())
       return Error{ErrorCode::usage, "3MF has no such unit, only " + known + "; choose one of these"};
    Model3mf model(geometry, unit, name);
    for (const Solid &solid : geometry.solids)
