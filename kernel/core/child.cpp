@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
@@ -56,6 +57,8 @@ Status readAll(int in, std::string &bytes, double seconds, const Job &job)
       if (poll(&wait, 1, 50) <= 0)
          continue;
       const ssize_t got = read(in, part.data(), part.size());
+      if (got < 0 && errno == EINTR)
+         continue;
       if (got <= 0)
          return {};
       bytes.append(part.data(), static_cast<std::size_t>(got));
