@@ -4,6 +4,16 @@
 
 using namespace diatom;
 
+namespace {
+
+/// Of the bricks that are made for one height of cells alone; 0 for all others.
+double heightFor(const std::string &maker)
+{
+   return maker.find("dna") != std::string::npos ? 1.08 : maker.find("lego") != std::string::npos ? 1.17 : 0;
+}
+
+} // namespace
+
 class MatrixTest : public QObject
 {
    Q_OBJECT
@@ -42,12 +52,6 @@ void MatrixTest::cells()
    if (!composite) // a slow checker
       QCOMPARE(QString::fromStdString(test::stlCheckFault(file(), wanted * 1e9, false)), QString());
    QCOMPARE(QString::fromStdString(test::admeshFault(file(), wanted * 1e9)), QString());
-}
-
-/// Of the bricks that are made for one height of cells alone; 0 for all others.
-static double heightFor(const std::string &maker)
-{
-   return maker.find("dna") != std::string::npos ? 1.08 : maker.find("lego") != std::string::npos ? 1.17 : 0;
 }
 
 void MatrixTest::parts()
