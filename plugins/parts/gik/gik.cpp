@@ -1,6 +1,7 @@
 // GIK micro-LEGO: a run of L cells is one upright plate with slots at every cell centre, cut from above and
 // below, into which the crossing plates of the next layers go. Measures: DMDesign's part, mm at its pitch
 // of 1.27 mm. The coarse mesh has no slots: the plates that cross there fill them.
+#include <diatom/part_runs.hpp>
 #include <diatom/part_shapes.hpp>
 
 #include <cmath>
@@ -83,9 +84,7 @@ PartMesh plate(const MeshRequest &request)
 /// A plate turned within its layer could not be slotted, so a cell's own orientation has no say.
 void bricks(const Call &call, const diatom_cells &cells, PartList &parts)
 {
-   for (const auto &run : runsOf(call, cells))
-      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[run.front()],
-                cellPosition(cells, run.front()), alongRun(cells.site[run.front()]), run);
+   onePartPerRun(call, cells, parts);
 }
 
 PartSet gik(const Values &)

@@ -1,5 +1,6 @@
 // DNA bricks drawn as blocks: a run of cells is one block with a plug below and a socket on top of each cell.
 // Measures: DMDesign's block, lattice units. Its plug is longer than the socket is deep; ours ends within it.
+#include <diatom/part_runs.hpp>
 #include <diatom/part_shapes.hpp>
 
 using namespace diatom::sdk;
@@ -33,9 +34,7 @@ PartMesh block(const MeshRequest &request)
 void decompose(const Call &call, const diatom_cells &cells, PartList &parts)
 {
    needHeight(cells, 1.08, "DNA bricks");
-   for (const auto &run : runsOf(call, cells))
-      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[run.front()],
-                cellPosition(cells, run.front()), alongRun(cells.site[run.front()]), run);
+   onePartPerRun(call, cells, parts);
 }
 
 PartSet gikDnaBlocks(const Values &)

@@ -1,6 +1,7 @@
 // DNA bricks as straight strands: 16 nucleotides per cell in a column that begins at the cell's top and hangs
 // eight nucleotides into the cell below, where they pair with that cell's own eight. Two cells of a brick are
 // one strand, linked by a bridge at the top. Measures: DMDesign's, lattice units.
+#include <diatom/part_runs.hpp>
 #include <diatom/part_shapes.hpp>
 
 using namespace diatom::sdk;
@@ -35,9 +36,7 @@ PartMesh strand(const MeshRequest &request)
 void decompose(const Call &call, const diatom_cells &cells, PartList &parts)
 {
    needHeight(cells, kHeight, "DNA bricks");
-   for (const auto &run : runsOf(call, cells, 2))
-      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[run.front()],
-                cellPosition(cells, run.front()), alongRun(cells.site[run.front()]), run);
+   onePartPerRun(call, cells, parts, 2);
 }
 
 PartSet gikDnaStrands(const Values &)

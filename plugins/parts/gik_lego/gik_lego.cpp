@@ -1,5 +1,6 @@
 // LEGO bricks one cell wide: a run of L cells is one hollow brick with L studs that press into the brick
 // above. Measures: DMDesign's 1 x 1 brick, mm at its pitch of 8.2 mm; longer bricks are merged from it.
+#include <diatom/part_runs.hpp>
 #include <diatom/part_shapes.hpp>
 
 using namespace diatom::sdk;
@@ -54,9 +55,7 @@ PartMesh brick(const MeshRequest &request)
 void decompose(const Call &call, const diatom_cells &cells, PartList &parts)
 {
    needHeight(cells, 1.17, "LEGO bricks");
-   for (const auto &run : runsOf(call, cells))
-      parts.add(0, static_cast<std::int32_t>(run.size()), cells.material[run.front()],
-                cellPosition(cells, run.front()), alongRun(cells.site[run.front()]), run);
+   onePartPerRun(call, cells, parts);
 }
 
 PartSet gikLego(const Values &)

@@ -48,13 +48,7 @@ PartMesh square(const MeshRequest &request)
 /// all frames end at, so a cell's own turn does no harm.
 void decompose(const Call &call, const diatom_cells &cells, PartList &parts)
 {
-   const Wxyz thirds[3] = {{1, 0, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {0.5, -0.5, -0.5, -0.5}};
-   for (std::int64_t i = 0; i < cells.count; ++i) {
-      pollEvery(call, i);
-      for (const Wxyz &third : thirds)
-         parts.add(0, 1, cells.material[i], cellPosition(cells, i), turned(cellOrientation(cells, i), third),
-                   {i});
-   }
+   partsPerCell(call, cells, parts, {{1, 0, 0, 0}, {0.5, 0.5, 0.5, 0.5}, {0.5, -0.5, -0.5, -0.5}});
 }
 
 PartSet octahedronSquares(const Values &)

@@ -171,12 +171,7 @@ Wxyz turnFor(std::string_view lattice)
 
 void oneVoxelPerCell(const Call &call, const diatom_cells &cells, PartList &parts)
 {
-   const Wxyz turn = turnFor(latticeOf(cells));
-   for (std::int64_t i = 0; i < cells.count; ++i) {
-      pollEvery(call, i);
-      parts.add(0, 1, cells.material[i], cellPosition(cells, i), turned(cellOrientation(cells, i), turn),
-                {i});
-   }
+   partsPerCell(call, cells, parts, {turnFor(latticeOf(cells))});
 }
 
 PartSet snapVoxel(const Values &)

@@ -47,13 +47,7 @@ PartMesh plate(const MeshRequest &request)
 void decompose(const Call &call, const diatom_cells &cells, PartList &parts)
 {
    const double s = std::sqrt(0.75);
-   const Wxyz thirds[3] = {{1, 0, 0, 0}, {0.5, 0, 0, s}, {0.5, 0, 0, -s}};
-   for (std::int64_t i = 0; i < cells.count; ++i) {
-      pollEvery(call, i);
-      for (const Wxyz &third : thirds)
-         parts.add(0, 1, cells.material[i], cellPosition(cells, i), turned(cellOrientation(cells, i), third),
-                   {i});
-   }
+   partsPerCell(call, cells, parts, {{1, 0, 0, 0}, {0.5, 0, 0, s}, {0.5, 0, 0, -s}});
 }
 
 PartSet trussTriangle(const Values &)

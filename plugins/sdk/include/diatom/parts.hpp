@@ -108,13 +108,31 @@ inline void pollEvery(const Call &call, std::int64_t step)
       throw Failure(DIATOM_CANCELLED, "cancelled");
 }
 
-/// The simplest decomposition: part type 0 once per cell, in the cell's own frame.
-inline void onePartPerCell(const Call &call, const diatom_cells &cells, PartList &parts)
+/// First b, then a.
+inline Wxyz turned(const Wxyz &a, const Wxyz &b)
+{
+   return {a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+           a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+           a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1],
+           a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0]};
+}
+
+/// Part type 0 once per cell and turn, in the cell's own frame turned by it.
+inline void partsPerCell(const Call &call, const diatom_cells &cells, PartList &parts,
+                         const std::vector<Wxyz> &turns)
 {
    for (std::int64_t i = 0; i < cells.count; ++i) {
       pollEvery(call, i);
-      parts.add(0, 1, cells.material[i], cellPosition(cells, i), cellOrientation(cells, i), {i});
+      for (const Wxyz &turn : turns)
+         parts.add(0, 1, cells.material[i], cellPosition(cells, i), turned(cellOrientation(cells, i), turn),
+                   {i});
    }
+}
+
+/// The simplest decomposition: part type 0 once per cell, in the cell's own frame.
+inline void onePartPerCell(const Call &call, const diatom_cells &cells, PartList &parts)
+{
+   partsPerCell(call, cells, parts, {{1, 0, 0, 0}});
 }
 
 /// A parts plugin.
