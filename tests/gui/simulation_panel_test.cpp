@@ -96,7 +96,10 @@ private slots:
       QVERIFY(studio.planned());
       studio.press("effects.measure");
       QTRY_VERIFY_WITH_TIMEOUT(
-          studio.label("effect.gravity.cost").contains(QRegularExpression("^cost -?[0-9.]+ ns$")), 60000);
+          studio
+              .label("effect.gravity.cost") // noise may make it less than nothing, which is said in words
+              .contains(QRegularExpression("^cost ([0-9.]+ ns|too small to measure)$")),
+          60000);
       QCOMPARE(studio.label("effect.ground.cost"), QString("cost unknown")); // off: nothing to measure
    }
 
