@@ -20,7 +20,7 @@ Hash hashOf(const CellArray &array)
 
 /// Four materials without pattern from a linear congruential generator (Numerical Recipes, 2nd ed.,
 /// section 7.1).
-class Noise
+class RandomCells
 {
 public:
    Cell next()
@@ -38,7 +38,7 @@ CellArray randomBlock(double count)
 {
    const auto side = static_cast<std::int32_t>(std::ceil(std::cbrt(count)));
    CellArray array;
-   Noise noise;
+   RandomCells noise;
    std::vector<Cell> slab(static_cast<std::size_t>(16) * side * side);
    for (std::int32_t x = 0; x < side; x += 16) {
       const std::int32_t thick = std::min(16, side - x);
@@ -91,7 +91,7 @@ Status setExplicit(Measure &measure)
    const std::int32_t side = measure.quick() ? 64 : 256;
    CellArray array;
    measure.time(1, [&] {
-      Noise noise;
+      RandomCells noise;
       array = CellArray();
       for (std::int32_t x = 0; x < side; ++x)
          for (std::int32_t y = 0; y < side; ++y)
@@ -224,7 +224,7 @@ Status visitAll(Measure &measure)
    return {};
 }
 
-constexpr Benchmark kBenchmarks[] = {
+constexpr Benchmark kCellBenchmarks[] = {
     {"fill-256", "fill a box of 256^3 cells with one material", fill256},
     {"fill-100m", "10^8 explicit cells of four random materials, in slabs", fillExplicit},
     {"set-16m", "16.8 million cells of four random materials, one by one", setExplicit},
@@ -239,6 +239,6 @@ constexpr Benchmark kBenchmarks[] = {
 
 } // namespace
 
-std::span<const Benchmark> cellBenchmarks() { return kBenchmarks; }
+std::span<const Benchmark> cellBenchmarks() { return kCellBenchmarks; }
 
 } // namespace diatom::cli

@@ -114,13 +114,13 @@ Status exportNested(Measure &measure)
    return model ? exportStl(measure, *model) : model.error();
 }
 
-constexpr Benchmark kBenchmarks[] = {
+constexpr Benchmark kExportBenchmarks[] = {
     {"hollow-256", "STL of a 256^3 solid with a hollow of half its width", exportFlat},
     {"nested-256", "STL of 4^3 hollow cubes of 64^3 cells in nested composites", exportNested},
 };
 
 } // namespace
 
-std::span<const Benchmark> exportBenchmarks() { return kBenchmarks; }
+std::span<const Benchmark> exportBenchmarks() { return kExportBenchmarks; }
 
 } // namespace diatom::cli

@@ -2,7 +2,7 @@
 #include "cli/bench.h"
 
 #include "cells/hierarchy.h"
-#include "document/files.h"
+#include "formats/files.h"
 #include "scene/solver_run.h"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ struct Row
 };
 
 /// Repeatable noise, 0 to 1 (Numerical Recipes, 2nd ed., section 7.1).
-class Noise
+class RandomNumbers
 {
 public:
    double next()
@@ -68,7 +68,7 @@ Design blockOf(const Row &row)
       materials.push_back(index ? *index : MaterialIndex{0});
    }
    CellArray &cells = design.model.root.cells;
-   Noise noise;
+   RandomNumbers noise;
    const int last = row.edge - 1;
    if (row.materials == 1 && row.filled == 1)
       cells.fill({{0, 0, 0}, {last, last, last}}, Cell{materials[0], 0, 0});

@@ -7,6 +7,7 @@
 #include <hwy/highway.h>
 
 #include "cli/bench.h"
+#include "core/clock.h"
 
 #include <algorithm>
 #include <chrono>
@@ -19,7 +20,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 template<typename T>
 double measured()
 {
-   using Clock = std::chrono::steady_clock;
    const hn::ScalableTag<T> d;
    using V = hn::Vec<decltype(d)>;
    constexpr int kSteps = 200000, kChains = 12; // two units of four steps' latency, and some to spare
@@ -43,7 +43,7 @@ double measured()
          l = hn::MulAdd(l, factor, term);
          m = hn::MulAdd(m, factor, term);
       }
-      const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+      const double seconds = secondsSince(start);
       const V all =
           hn::Add(hn::Add(hn::Add(a, b), hn::Add(c, e)),
                   hn::Add(hn::Add(hn::Add(f, g), hn::Add(h, i)), hn::Add(hn::Add(j, k), hn::Add(l, m))));

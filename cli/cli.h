@@ -3,7 +3,7 @@
 
 #include "cells/hierarchy.h"
 #include "core/job.h"
-#include "document/files.h"
+#include "formats/files.h"
 #include "plugins/catalogue.h"
 
 #include <nlohmann/json.hpp>

@@ -29,7 +29,7 @@ constexpr Group kGroups[] = {
     {"mechanics", mechanicsBenchmarks},
 };
 
-struct Options
+struct BenchOptions
 {
    std::vector<std::string> names;
    bool quick = false, list = false;
@@ -52,7 +52,7 @@ std::uint64_t statusBytes(std::string_view key)
 /// Sets VmHWM back to the present use (proc(5), clear_refs).
 void resetPeak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
-bool wanted(const Options &options, std::string_view group, std::string_view name)
+bool wanted(const BenchOptions &options, std::string_view group, std::string_view name)
 {
    const std::string full = std::string(group) + '/' + std::string(name);
    return options.names.empty() ||
@@ -61,10 +61,10 @@ bool wanted(const Options &options, std::string_view group, std::string_view nam
 }
 
 /// The first name that nothing answers to; empty when all do.
-std::string unknownName(const Options &options)
+std::string unknownName(const BenchOptions &options)
 {
    for (const std::string &name : options.names) {
-      Options one;
+      BenchOptions one;
       one.names = {name};
       bool any = false;
       for (const Group &group : kGroups)
@@ -125,7 +125,7 @@ void listBenchmarks(Context &context)
    context.printTable(rows);
 }
 
-void run(const Options &options, Context &context)
+void run(const BenchOptions &options, Context &context)
 {
    if (options.list)
       return listBenchmarks(context);
@@ -188,7 +188,7 @@ double Measure::rate() const { return seconds() > 0 ? m_amount / seconds() : 0; 
 
 void addBench(CLI::App &app, Context &context)
 {
-   const auto options = std::make_shared<Options>();
+   const auto options = std::make_shared<BenchOptions>();
    CLI::App *command =
        app.add_subcommand("bench", "Measure this machine: seconds, rate, peak memory, result hash");
    command->add_option("NAMES", options->names, "Benchmarks or groups; all when left out");

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDefaultRows = 200, kMostRows = 1e7;
 
-struct Options
+struct CircuitOptions
 {
    std::string file, output = "-";
    double until = 0, every = 0;
@@ -54,7 +54,8 @@ nlohmann::ordered_json describe(const Networks &networks, const Setup &setup)
 }
 
 /// Voltage of every net at regular times, as CSV.
-Status writeVoltages(const Networks &networks, const Setup &setup, const Options &options, const Job &job)
+Status writeVoltages(const Networks &networks, const Setup &setup, const CircuitOptions &options,
+                     const Job &job)
 {
    const double every = options.every > 0 ? options.every : options.until / kDefaultRows;
    if (options.until / every > kMostRows)
@@ -77,7 +78,7 @@ Status writeVoltages(const Networks &networks, const Setup &setup, const Options
    return file.commit();
 }
 
-void showCircuit(const Options &options, Context &context)
+void showCircuit(const CircuitOptions &options, Context &context)
 {
    const auto input = context.open(options.file);
    if (!input)
@@ -103,7 +104,7 @@ void showCircuit(const Options &options, Context &context)
 
 void addCircuit(CLI::App &app, Context &context)
 {
-   const auto options = std::make_shared<Options>();
+   const auto options = std::make_shared<CircuitOptions>();
    CLI::App *command =
        app.add_subcommand("circuit", "Show conductor nets, sources, actuators and wiring problems");
    command->add_option("FILE", options->file, "A design of any readable format, - for standard input")

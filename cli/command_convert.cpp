@@ -5,8 +5,8 @@
 #include "cli/number_checks.h"
 
 #include "core/file.h"
-#include "document/foreign.h"
-#include "document/import_mesh.h"
+#include "formats/foreign.h"
+#include "formats/import_mesh.h"
 #include "io/mesh_read.h"
 
 #include <CLI/CLI.hpp>

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options
+struct ModesOptions
 {
    RunOptions run;
    std::optional<double> at;
@@ -95,7 +95,7 @@ void noteFreeMotions(const Context::Input &input, Context &context)
          context.note("warning: " + problem.text);
 }
 
-Status findInput(const Context::Input &input, const Options &options, Context &context)
+Status findInput(const Context::Input &input, const ModesOptions &options, Context &context)
 {
    const Setup &setup = input.opened.design.setup;
    auto scene = Scene::build(*input.hierarchy, setup, context.job(), Analysis::modes);
@@ -120,7 +120,7 @@ Status findInput(const Context::Input &input, const Options &options, Context &c
    return {};
 }
 
-void modes(const Options &options, Context &context)
+void modes(const ModesOptions &options, Context &context)
 {
    const auto input = openToRun(options.run, context, [&](Design &design) {
       design.setup.solverValues["modes"] = static_cast<double>(options.count);
@@ -136,7 +136,7 @@ void modes(const Options &options, Context &context)
 
 void addModes(CLI::App &app, Context &context)
 {
-   const auto options = std::make_shared<Options>();
+   const auto options = std::make_shared<ModesOptions>();
    CLI::App *command =
        app.add_subcommand("modes", "Find the lowest frequencies of vibration about the static balance");
    addModelOptions(*command, options->run);

@@ -16,7 +16,7 @@ namespace diatom::cli {
 
 namespace {
 
-struct Options
+struct RenderOptions
 {
    std::string file, out, size = "1280x800", view = "iso", colour = "material";
    double atTime = 0;
@@ -39,8 +39,8 @@ Result<std::pair<int, int>> parseSize(const std::string &text)
 }
 
 /// Runs the simulation to the asked moment.
-Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &input, const Options &options,
-                                                       Context &context)
+Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &input,
+                                                       const RenderOptions &options, Context &context)
 {
    const Setup &setup = input.opened.design.setup;
    auto scene = Scene::build(*input.hierarchy, setup, context.job());
@@ -57,7 +57,8 @@ Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &inp
    return momentOf(**simulation, *rest, context.job());
 }
 
-Status draw(const Context::Input &input, const Options &options, std::pair<int, int> size, Context &context)
+Status draw(const Context::Input &input, const RenderOptions &options, std::pair<int, int> size,
+            Context &context)
 {
    PictureRequest request;
    request.out = options.out;
@@ -85,7 +86,7 @@ Status draw(const Context::Input &input, const Options &options, std::pair<int, 
    return {};
 }
 
-void run(const Options &options, Context &context)
+void run(const RenderOptions &options, Context &context)
 {
    const auto size = parseSize(options.size);
    if (!size) {
@@ -103,7 +104,7 @@ void run(const Options &options, Context &context)
 
 void addRender(CLI::App &app, Context &context)
 {
-   auto options = std::make_shared<Options>();
+   auto options = std::make_shared<RenderOptions>();
    CLI::App *command = app.add_subcommand("render", "Draw a picture of a design; needs no display");
    command->add_option("FILE", options->file, "Design, or file of an earlier program; - reads standard input")
        ->required();

@@ -21,7 +21,7 @@ constexpr double kDefaultRows = 200; // of a record whose interval is not given
 constexpr double kMostRows = 1e7;
 constexpr std::size_t kEffort = 6; // numbers of the output "effort"
 
-struct Options
+struct SimulateOptions
 {
    RunOptions run;
    std::string integrator, precision, step, accuracy;
@@ -31,7 +31,7 @@ struct Options
 };
 
 /// What motion alone can be told.
-Status applyOptions(const Options &options, Setup &setup)
+Status applyOptions(const SimulateOptions &options, Setup &setup)
 {
    if (!options.integrator.empty())
       setup.solverValues["integrator"] = options.integrator;
@@ -56,7 +56,7 @@ Status applyOptions(const Options &options, Setup &setup)
 }
 
 /// Advances to the end, recording on the way.
-Status runTo(Simulation &simulation, const Options &options, Recorder *recorder, const Job &job)
+Status runTo(Simulation &simulation, const SimulateOptions &options, Recorder *recorder, const Job &job)
 {
    simulation.setGoal(options.until);
    if (!recorder)
@@ -126,7 +126,7 @@ Result<nlohmann::ordered_json> summary(const Simulation &simulation, const std::
    return object;
 }
 
-Status finishFiles(const Simulation &simulation, const Model &model, const Options &options,
+Status finishFiles(const Simulation &simulation, const Model &model, const SimulateOptions &options,
                    Recorder *recorder, const Status &ran, const Job &job)
 {
    if (recorder)
@@ -142,7 +142,7 @@ struct Started
    std::vector<Probe> probes;
 };
 
-Result<Started> start(const Context::Input &input, const Options &options, Context &context)
+Result<Started> start(const Context::Input &input, const SimulateOptions &options, Context &context)
 {
    const Setup &setup = input.opened.design.setup;
    auto scene = Scene::build(*input.hierarchy, setup, context.job());
@@ -161,7 +161,8 @@ Result<Started> start(const Context::Input &input, const Options &options, Conte
 }
 
 /// Settings by --accuracy; nothing where it was not asked for.
-Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::Input &input, Context &context)
+Result<std::optional<AccuracyChoice>> choose(const SimulateOptions &options, Context::Input &input,
+                                             Context &context)
 {
    if (options.accuracy.empty())
       return std::optional<AccuracyChoice>();
@@ -183,7 +184,7 @@ Result<std::optional<AccuracyChoice>> choose(const Options &options, Context::In
    return std::optional(*std::move(choice));
 }
 
-void simulate(const Options &options, Context &context)
+void simulate(const SimulateOptions &options, Context &context)
 {
    const auto input =
        openToRun(options.run, context, [&](Design &design) { return applyOptions(options, design.setup); });
@@ -228,7 +229,7 @@ void simulate(const Options &options, Context &context)
 
 void addSimulate(CLI::App &app, Context &context)
 {
-   const auto options = std::make_shared<Options>();
+   const auto options = std::make_shared<SimulateOptions>();
    CLI::App *command =
        app.add_subcommand("simulate", "Simulate motion in time; prints energies, effects and probes");
    addRunOptions(*command, options->run);

@@ -19,9 +19,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMostRows = 1e6;
+constexpr double kMostCurveRows = 1e6;
 
-struct Options
+struct SolveOptions
 {
    RunOptions run;
    std::optional<double> at, tolerance;
@@ -157,11 +157,11 @@ Status addRow(Recorder &recorder, const Balance &balance, const Setup &setup, co
 }
 
 /// Times of balances from 0 to the end, the end alone without an interval.
-Result<std::vector<double>> timesOf(const Options &options, double end)
+Result<std::vector<double>> timesOf(const SolveOptions &options, double end)
 {
    if (options.every <= 0)
       return std::vector<double>{end};
-   if (end / options.every > kMostRows)
+   if (end / options.every > kMostCurveRows)
       return Error{ErrorCode::usage, "--every is too short: there would be more than a million balances"};
    std::vector<double> times;
    const auto last = static_cast<std::int64_t>(std::ceil(end / options.every * (1 - 1e-12)));
@@ -172,7 +172,7 @@ Result<std::vector<double>> timesOf(const Options &options, double end)
 }
 
 /// The balances at these times, each recorded; the last one is handed back.
-Result<Balance> balances(const Options &options, const Setup &setup, const std::vector<double> &times,
+Result<Balance> balances(const SolveOptions &options, const Setup &setup, const std::vector<double> &times,
                          std::unique_ptr<Scene> scene, const std::vector<Probe> &probes, Context &context)
 {
    const double tolerance = options.tolerance.value_or(BalanceRequest().tolerance);
@@ -198,7 +198,7 @@ Result<Balance> balances(const Options &options, const Setup &setup, const std::
    return balance;
 }
 
-Status solveInput(const Context::Input &input, const Options &options, Context &context)
+Status solveInput(const Context::Input &input, const SolveOptions &options, Context &context)
 {
    const Setup &setup = input.opened.design.setup;
    if (Status held = checkHeld(input, context); !held)
@@ -233,7 +233,7 @@ Status solveInput(const Context::Input &input, const Options &options, Context &
    return {};
 }
 
-void solve(const Options &options, Context &context)
+void solve(const SolveOptions &options, Context &context)
 {
    const auto input = openToRun(options.run, context, [&](Design &design) {
       if (options.loadSteps > 0)
@@ -250,7 +250,7 @@ void solve(const Options &options, Context &context)
 
 void addSolve(CLI::App &app, Context &context)
 {
-   const auto options = std::make_shared<Options>();
+   const auto options = std::make_shared<SolveOptions>();
    CLI::App *command = app.add_subcommand(
        "solve", "Find the static balance; prints residual, displacement, reactions and probes");
    addRunOptions(*command, options->run);

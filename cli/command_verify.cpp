@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Options
+struct VerifyOptions
 {
    std::vector<std::string> files;
    bool list = false, markdown = false, summary = false;
@@ -115,7 +115,8 @@ void printCase(const CaseReport &report, bool summary)
    }
 }
 
-void print(const std::vector<CaseReport> &reports, const Tally &all, const Options &options, Context &context)
+void print(const std::vector<CaseReport> &reports, const Tally &all, const VerifyOptions &options,
+           Context &context)
 {
    if (options.markdown) {
       fmt::print("{}", verificationPage(reports));
@@ -133,7 +134,7 @@ void print(const std::vector<CaseReport> &reports, const Tally &all, const Optio
    fmt::print("{} cases: {}\n", reports.size(), text(all));
 }
 
-void verify(const Options &options, Context &context)
+void verify(const VerifyOptions &options, Context &context)
 {
    if (options.list)
       return listForms(context);
@@ -160,7 +161,7 @@ void verify(const Options &options, Context &context)
 
 void addVerify(CLI::App &app, Context &context)
 {
-   const auto options = std::make_shared<Options>();
+   const auto options = std::make_shared<VerifyOptions>();
    CLI::App *command = app.add_subcommand("verify", "Hold the solver against answers found in another way");
    auto *files = command->add_option(
        "CASE", options->files, "Verification cases (docs/verification-cases.md), JSON, - for standard input");

@@ -1,5 +1,6 @@
 #include "gui/accuracy_jobs.h"
 
+#include "core/clock.h"
 #include "study/motion_time.h"
 
 #include <chrono>
@@ -7,8 +8,6 @@
 namespace diatom::gui {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double kLookSeconds = 1;   // of wall time to see the design move
 constexpr double kUsualLength = 1;   // s

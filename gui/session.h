@@ -4,7 +4,7 @@
 
 #include "cells/hierarchy.h"
 #include "document/document.h"
-#include "document/files.h"
+#include "formats/files.h"
 
 #include <QObject>
 #include <QString>

@@ -1,5 +1,6 @@
 #include "gui/simulation_player.h"
 
+#include "core/clock.h"
 #include "render/color_map.h"
 
 #include <QThread>
@@ -12,9 +13,6 @@
 namespace diatom::gui {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 constexpr double kFrameSeconds = 1.0 / 60; // between frames, and the most simulated in one go
 constexpr double kSliceSeconds = 0.008;    // of wall time aimed at, so that pause and cancel act at once
@@ -125,10 +123,10 @@ Status SimulationPlayer::Run::play(Simulation &simulation)
                return last;
             return status;
          }
-         slice = std::clamp(slice * std::clamp(kSliceSeconds / std::max(since(begin), 1e-6), 0.5, 2.0),
+         slice = std::clamp(slice * std::clamp(kSliceSeconds / std::max(secondsSince(begin), 1e-6), 0.5, 2.0),
                             simulation.step(), std::max(kFrameSeconds, simulation.step()));
-         if (since(measured) > 0.5) {
-            factor = (simulation.time() - measuredFrom) / since(measured);
+         if (secondsSince(measured) > 0.5) {
+            factor = (simulation.time() - measuredFrom) / secondsSince(measured);
             measured = Clock::now();
             measuredFrom = simulation.time();
          }
@@ -137,14 +135,14 @@ Status SimulationPlayer::Run::play(Simulation &simulation)
             playing = false;
             break;
          }
-         const bool due = since(lastFrame) >= kFrameSeconds;
+         const bool due = secondsSince(lastFrame) >= kFrameSeconds;
          if (due) {
             lastFrame = Clock::now();
             if (Status status = publish(simulation, factor); !status)
                return status;
          }
          // Never faster than real time.
-         const double ahead = simulation.time() - from - since(resumed);
+         const double ahead = simulation.time() - from - secondsSince(resumed);
          if (ahead > 0) {
             std::unique_lock lock(mutex);
             wake.wait_for(lock, std::chrono::duration<double>(std::min(ahead, kFrameSeconds)),

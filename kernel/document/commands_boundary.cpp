@@ -11,7 +11,7 @@ namespace diatom {
 
 namespace {
 
-constexpr std::size_t kMostCells = 1'000'000;
+constexpr std::size_t kMostHeld = 1'000'000;
 
 /// Arguments "cell", "cells" or "box" (every cell in it), all of which must exist.
 std::vector<Index> existingCells(Edit &edit)
@@ -31,15 +31,15 @@ std::vector<Index> existingCells(Edit &edit)
       return cells;
    edit.hierarchy()->visit(box, [&](Index i, Cell) {
       cells.push_back(i);
-      return cells.size() <= kMostCells;
+      return cells.size() <= kMostHeld;
    });
    if (cells.empty())
       edit.fail(ErrorCode::invalid, "there are no cells in the box");
-   if (cells.size() > kMostCells)
+   if (cells.size() > kMostHeld)
       edit.fail(
           ErrorCode::invalid,
           fmt::format("there are more than {} cells in the box; name it as a region, or take a smaller one",
-                      kMostCells));
+                      kMostHeld));
    return cells;
 }
 
@@ -236,7 +236,7 @@ constexpr CommandParameter kStart[] = {
     {"about_m", "list", false, "point that the cells turn and spin about as one body"},
 };
 
-constexpr Command kCommands[] = {
+constexpr Command kBoundaryTable[] = {
     {"support", "Support cells", "Holds cells at rest, in all or some of their freedoms.", kSupport, support},
     {"unsupport", "Release cells", "Removes supports.", kPlaces, unsupport},
     {"drive", "Drive cells", "Moves a freedom of cells along a curve over time.", kDrive, drive},
@@ -247,6 +247,6 @@ constexpr Command kCommands[] = {
 
 } // namespace
 
-const std::span<const Command> kBoundaryCommands = kCommands;
+const std::span<const Command> kBoundaryCommands = kBoundaryTable;
 
 } // namespace diatom

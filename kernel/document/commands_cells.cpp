@@ -150,7 +150,7 @@ constexpr CommandParameter kPaint[] = {
     {"orientation", "number", false, "new rotation number; default as it was"},
 };
 
-constexpr Command kCommands[] = {
+constexpr Command kCellTable[] = {
     {"place", "Place cell", "Puts a cell or super-cell where nothing is.", kPlace, place},
     {"erase", "Erase cell", "Removes a cell with its super-cell, or the composite it belongs to.", kErase,
      erase},
@@ -159,6 +159,6 @@ constexpr Command kCommands[] = {
 
 } // namespace
 
-const std::span<const Command> kCellCommands = kCommands;
+const std::span<const Command> kCellCommands = kCellTable;
 
 } // namespace diatom

@@ -211,7 +211,7 @@ constexpr CommandParameter kPlaceComposite[] = {
 constexpr CommandParameter kAtCell[] = {{"cell", "index", true, "any of its cells"}};
 constexpr CommandParameter kDefinition[] = {{"definition", "text", true, "id of the composite"}};
 
-constexpr Command kCommands[] = {
+constexpr Command kCompositeTable[] = {
     {"define-composite", "Group into composite",
      "Makes a composite of what is in a box and puts an instance there.", kDefine, defineComposite},
     {"place-composite", "Place composite", "Puts an instance of a composite where nothing is.",
@@ -224,6 +224,6 @@ constexpr Command kCommands[] = {
 
 } // namespace
 
-const std::span<const Command> kCompositeCommands = kCommands;
+const std::span<const Command> kCompositeCommands = kCompositeTable;
 
 } // namespace diatom

@@ -158,7 +158,7 @@ constexpr CommandParameter kLattice[] = {
     {"aspect", "list", false, "scale along x, y and z"},
 };
 
-constexpr Command kCommands[] = {
+constexpr Command kMaterialTable[] = {
     {"set-material", "Set material", "Adds a material or changes one.", kSetMaterial, setMaterial},
     {"remove-material", "Remove material", "Removes a material that no cell is made of.", kId,
      removeMaterial},
@@ -169,6 +169,6 @@ constexpr Command kCommands[] = {
 
 } // namespace
 
-const std::span<const Command> kMaterialCommands = kCommands;
+const std::span<const Command> kMaterialCommands = kMaterialTable;
 
 } // namespace diatom

@@ -310,7 +310,7 @@ constexpr CommandParameter kArray[] = {
     {"count", "number", true, "how many in all, the original included"},
 };
 
-constexpr Command kCommands[] = {
+constexpr Command kRegionTable[] = {
     {"fill", "Fill box", "Fills a box with a material, replacing cells that are there.", kFill, fill},
     {"erase-box", "Erase box", "Removes every cell, super-cell and composite that a box touches.", kBox,
      eraseBox},
@@ -321,6 +321,6 @@ constexpr Command kCommands[] = {
 
 } // namespace
 
-const std::span<const Command> kRegionCommands = kCommands;
+const std::span<const Command> kRegionCommands = kRegionTable;
 
 } // namespace diatom

@@ -182,7 +182,7 @@ constexpr CommandParameter kSolver[] = {
     {"step_s", "number", false, "the time step along with them; 0 = the solver's stable step"},
 };
 
-constexpr Command kCommands[] = {
+constexpr Command kSetupTable[] = {
     {"source", "Set signal", "Sets what a source cell drives its wires with.", kSource, source},
     {"remove-source", "Remove signal", "Leaves a source cell without a signal.", kCell, removeSource},
     {"gravity", "Set gravity", "Sets the acceleration that everything feels.", kGravity, gravity},
@@ -199,6 +199,6 @@ constexpr Command kCommands[] = {
 
 } // namespace
 
-const std::span<const Command> kSetupCommands = kCommands;
+const std::span<const Command> kSetupCommands = kSetupTable;
 
 } // namespace diatom

@@ -10,7 +10,7 @@ namespace diatom {
 
 namespace {
 
-constexpr std::int64_t kLeaf = 16;                     // cells along a block that is expanded
+constexpr std::int64_t kLeafBlock = 16;                // cells along a block that is expanded
 constexpr std::int64_t kBuried = 256;                  // cells along a block worth asking whether it is full
 constexpr std::int64_t kWorld = std::int64_t{1} << 31; // the cube that holds every index
 
@@ -90,8 +90,8 @@ private:
       return !m_hierarchy.visit(box, [](Index, Cell) { return false; });
    }
 
-   /// Halves the world down to blocks of kLeaf, past empty ones. Blocks lie on multiples of their size, so
-   /// the order of faces depends on the content only. False when cancelled.
+   /// Halves the world down to blocks of kLeafBlock, past empty ones. Blocks lie on multiples of their size,
+   /// so the order of faces depends on the content only. False when cancelled.
    bool descend(const Corner &low, std::int64_t size)
    {
       const Box box = clipped(low, size);
@@ -99,11 +99,11 @@ private:
          return true;
       if (m_job.cancelled())
          return false;
-      if (box.volume() > double(kLeaf * kLeaf * kLeaf) && !occupied(box))
+      if (box.volume() > double(kLeafBlock * kLeafBlock * kLeafBlock) && !occupied(box))
          return true;
       if (size <= kBuried && m_tables.allLinked() && buried(box))
          return true;
-      if (size <= kLeaf)
+      if (size <= kLeafBlock)
          return leaf(box);
       const std::int64_t half = size / 2;
       for (int child = 0; child < 8; ++child)

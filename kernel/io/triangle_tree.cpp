@@ -9,7 +9,7 @@ namespace diatom {
 
 namespace {
 
-constexpr std::int32_t kLeaf = 8;
+constexpr std::int32_t kLeafTriangles = 8;
 /// A box counts as one dipole from this many of its radii on.
 constexpr double kFar = 2;
 
@@ -52,7 +52,7 @@ void TriangleTree::build(std::int32_t first, std::int32_t count)
    Node node;
    node.first = first;
    node.count = count;
-   node.leaf = count <= kLeaf;
+   node.leaf = count <= kLeafTriangles;
    summarise(node);
    m_nodes.push_back(node);
    if (!node.leaf) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMaxPeriod = 64, kMaxSites = 64, kMaxShapes = 64;
 constexpr int kMaxLinks = 512, kMaxOffset = 64, kMaxReach = 16; // in steps of an index
-constexpr double kTolerance = 1e-6;                             // relative to the size of a cell
+constexpr double kMotifTolerance = 1e-6;                        // relative to the size of a cell
 
 using Fault = std::optional<std::string>;
 
@@ -222,7 +222,7 @@ Fault MotifGuard::mutual()
                 site);
          const Vec3 here = position(from) + featureCentre(site, n);
          const Vec3 there = position(to) + featureCentre(siteOf(to), reverse);
-         if ((here - there).norm() > kTolerance * m_outer[static_cast<std::size_t>(m_motif.shape[site])])
+         if ((here - there).norm() > kMotifTolerance * m_outer[static_cast<std::size_t>(m_motif.shape[site])])
             return fmt::format("link {} of site {} joins features that do not meet", number, site);
       }
    return std::nullopt;
@@ -235,7 +235,7 @@ Fault MotifGuard::overlaps()
    double filled = 0;
    for (int site = 0; site < m_motif.sites; ++site)
       filled += shapeAt(site).volume;
-   if (filled > (1 + kTolerance) * std::abs(m_basis.determinant()) * m_motif.sites)
+   if (filled > (1 + kMotifTolerance) * std::abs(m_basis.determinant()) * m_motif.sites)
       return "its cells overlap: they fill more than all space";
 
    double shift = 0;
@@ -258,7 +258,7 @@ Fault MotifGuard::overlaps()
             for (std::int32_t z = -range[2]; z <= range[2]; ++z) {
                const Index there = here + Index{x, y, z};
                const double apart = (position(there) - position(here)).norm();
-               if (there != here && apart < (1 - kTolerance) * (inner(here) + inner(there)))
+               if (there != here && apart < (1 - kMotifTolerance) * (inner(here) + inner(there)))
                   return fmt::format("its cells overlap: sites {} and {} are too close", site, siteOf(there));
             }
    }

@@ -1,5 +1,6 @@
 #include "scene/solver_run.h"
 
+#include "core/clock.h"
 #include "scene/problems.h"
 
 #include <fmt/format.h>
@@ -190,12 +191,11 @@ Status SolverRun::listOutputs(const Job &job)
 
 Status SolverRun::step(const diatom_step_request &request, diatom_step_result &result, const Job &job)
 {
-   using Clock = std::chrono::steady_clock;
    const auto before = Clock::now();
    const Status stepped = m_solver->call("step", job, [&](const diatom_call *call) {
       return m_solver->table<diatom_solver>()->step(m_solver->self(), call, &request, &result);
    });
-   m_wall += std::chrono::duration<double>(Clock::now() - before).count();
+   m_wall += secondsSince(before);
    m_time = result.time;
    return stepped;
 }

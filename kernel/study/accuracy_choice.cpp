@@ -1,7 +1,9 @@
 #include "study/accuracy_choice.h"
 
+#include "core/clock.h"
 #include "core/text.h"
 #include "study/settings.h"
+#include "study/step_limit.h"
 
 #include <fmt/format.h>
 
@@ -14,10 +16,7 @@ namespace diatom {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr std::array<std::string_view, 2> kAxes{"integrator", "precision"};
-constexpr double kCoarsest = 0.9; // of the stable step
+constexpr std::array<std::string_view, 2> kSearched{"integrator", "precision"};
 /// Estimates from three step lengths carry an error of their own, some ten to thirty percent of them at the
 /// coarsest steps: what is aimed at.
 constexpr double kAim = 0.7;
@@ -25,11 +24,6 @@ constexpr double kLeastBudget = 1; // s
 /// Of the time of a run, so that a probe sees a sixteenth of it at three step lengths.
 constexpr double kBudgetShare = 0.55;
 constexpr double kPilot = 0.1; // s, for timing a step
-
-double secondsSince(Clock::time_point start)
-{
-   return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 struct Search
 {
@@ -62,7 +56,7 @@ Result<double> Search::leastSeconds(const Values &values) const
       return limit.error();
    if (!(limit->stableStep > 0))
       return 0.0;
-   const double step = kCoarsest * limit->stableStep;
+   const double step = kCoarsestStep * limit->stableStep;
    const auto time = timeStep(subject, values, step, request.until, kPilot, job);
    if (!time)
       return time.error();
@@ -155,7 +149,7 @@ Result<AccuracyChoice> chooseForAccuracy(const Subject &subject, const ChoiceReq
    Values inUse = subject.setup.solverValues;
    for (const auto &[name, value] : request.fixed)
       inUse[name] = value;
-   auto choices = solverChoices(*subject.catalogue, subject.setup.solver, inUse, kAxes);
+   auto choices = solverChoices(*subject.catalogue, subject.setup.solver, inUse, kSearched);
    for (Choice &one : choices)
       if (request.fixed.contains(one.name))
          one.choices.resize(1);

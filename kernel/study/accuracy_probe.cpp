@@ -1,6 +1,8 @@
 #include "study/accuracy_probe.h"
 
+#include "core/clock.h"
 #include "core/text.h"
+#include "study/step_limit.h"
 
 #include <fmt/format.h>
 
@@ -12,25 +14,16 @@ namespace diatom {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr double kCoarsest = 0.9; // of the stable step, as the solver's own
-constexpr std::int64_t kSamples = 32;
+constexpr std::int64_t kWindowSamples = 32;
 constexpr std::int64_t kFewestSteps = 8; // in the window at the coarsest step: fewer show no motion
 constexpr double kPilotShare = 0.1;      // of the budget, for timing a step
-constexpr double kOwnSteps = 4; // of a solver that chooses its steps by the motion, in the longest one tried
-constexpr double kRunsShare = 0.85; // of the budget, for the runs
+constexpr double kRunsShare = 0.85;      // of the budget, for the runs
 /// A run this many times the window is as far as a growth seen within the window is carried on.
 constexpr double kFarthest = 16;
 /// Of the coarsest step: a law seen over a factor of four is not carried on further than this.
 constexpr double kFinest = 1.0 / 256;
 /// Phase errors grow as time, those of a motion under way as its square; anything faster is chaos.
 constexpr double kFastestGrowth = 3;
-
-double secondsSince(Clock::time_point start)
-{
-   return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 Convergence judgeRuns(const Quantity &quantity, const std::array<TrialRun, 3> &runs, double until)
 {
@@ -91,7 +84,7 @@ Status runLadder(const Subject &subject, const ProbeRequest &request, AccuracyPr
 {
    const double coarsest = probe.step;
    const auto fits = std::max<std::int64_t>(1, std::llround(probe.window / coarsest));
-   const std::int64_t perSample = (fits + kSamples - 1) / kSamples;
+   const std::int64_t perSample = (fits + kWindowSamples - 1) / kWindowSamples;
    // Rounding down makes the step longer by at most one part in the samples: still below the limit.
    const std::int64_t samples = std::max<std::int64_t>(1, fits / perSample);
    std::array<TrialRun, 3> runs;
@@ -119,7 +112,7 @@ Result<double> baseStep(const Subject &subject, const ProbeRequest &request, con
    const auto own = ownStep(subject, request.values, probe.errorUntil, kPilotShare * request.budget, job);
    if (!own)
       return own.error();
-   return std::min(probe.errorUntil / 20, kOwnSteps * *own);
+   return std::min(probe.errorUntil / 20, kMostOwnSteps * *own);
 }
 
 void fillPresets(AccuracyProbe &probe)
@@ -146,7 +139,7 @@ std::string_view knowledgeText(Knowledge how)
 
 Result<Quantity> busiestQuantity(const Subject &subject, const Values &values, double until, const Job &job)
 {
-   constexpr std::array<const char *, 3> kAxes{"x", "y", "z"};
+   constexpr std::array<const char *, 3> kChannels{"x", "y", "z"};
    constexpr int kLooks = 16;
    auto simulation = startTrial(subject, values, 0, job);
    if (!simulation)
@@ -170,7 +163,7 @@ Result<Quantity> busiestQuantity(const Subject &subject, const Values &values, d
    }
    Quantity quantity;
    quantity.cell = (*simulation)->scene().indices()[cell];
-   quantity.channel = kAxes[axis];
+   quantity.channel = kChannels[axis];
    return quantity;
 }
 
@@ -215,7 +208,7 @@ Result<AccuracyProbe> probeAccuracy(const Subject &subject, const ProbeRequest &
    if (!base)
       return base.error();
    probe.base = *base;
-   probe.step = kCoarsest * probe.base;
+   probe.step = kCoarsestStep * probe.base;
    const auto stepSeconds =
        timeStep(subject, request.values, probe.step, probe.until, kPilotShare * request.budget, job);
    if (!stepSeconds)

@@ -1,7 +1,9 @@
 #include "study/accuracy_runs.h"
 
+#include "core/clock.h"
 #include "core/text.h"
 #include "study/refine.h"
+#include "study/step_limit.h"
 
 #include <fmt/format.h>
 
@@ -13,24 +15,18 @@ namespace diatom {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Parameters of a solver that this study walks through, where the solver has them. The first two say how the
 /// model is solved, the others what the model is.
 constexpr std::array<std::string_view, 4> kAxes{"integrator", "precision", "gradient", "beam"};
 constexpr std::size_t kSolvingAxes = 2;
 
-constexpr int kLevels = 4;        // step lengths of a ladder, each half of the one before
-constexpr double kCoarsest = 0.9; // of the stable step
-/// Solvers that no step can upset choose theirs by the motion; ladders begin at this many of them, and go as
-/// far below.
-constexpr double kOwnSteps = 4;
+constexpr int kLevels = 4; // step lengths of a ladder, each half of the one before
 constexpr int kLevelsWithoutLimit = 5;
-constexpr double kOwnShare = 0.02;        // of the budget, for seeing such a choice
-constexpr std::int64_t kSamples = 16;     // of a curve
-constexpr std::int64_t kSwings = 512;     // samples where a frequency is wanted: some sixty a swing
-constexpr double kStepsWithoutLimit = 16; // in the run, at the coarsest, for solvers that no step can upset
-constexpr double kFirstPass = 0.7;        // of the budget; the rest is for timing again
+constexpr double kOwnShare = 0.02;          // of the budget, for seeing such a choice
+constexpr std::int64_t kCurveSamples = 16;  // of a curve
+constexpr std::int64_t kSwingSamples = 512; // samples where a frequency is wanted: some sixty a swing
+constexpr double kStepsWithoutLimit = 16;   // in the run, at the coarsest, for solvers that no step can upset
+constexpr double kFirstPass = 0.7;          // of the budget; the rest is for timing again
 /// A setting not yet tried may take this many times as long a step as the scene's own: Runge-Kutta takes
 /// four.
 constexpr double kUnknownCost = 5;
@@ -70,7 +66,7 @@ AccuracyRuns::AccuracyRuns(Subject subject, AccuracyPlan plan)
    m_choices = solverChoices(*own.catalogue, own.setup.solver, own.setup.solverValues, kAxes);
 }
 
-double AccuracyRuns::spent() const { return std::chrono::duration<double>(Clock::now() - m_start).count(); }
+double AccuracyRuns::spent() const { return secondsSince(m_start); }
 
 std::optional<double> AccuracyRuns::valueOf(const History &history) const
 {
@@ -145,7 +141,7 @@ Status AccuracyRuns::planMotion(std::size_t variant, const Job &job)
       if (!limit)
          return limit.error();
       ladder.limit = limit->stableStep;
-      ladder.coarsest = kCoarsest * ladder.limit;
+      ladder.coarsest = kCoarsestStep * ladder.limit;
       if (ladder.limit <= 0) {
          const auto own = ownStep(of.subject, values, m_plan.until, kOwnShare * m_plan.request.budget, job);
          if (!own && own.error().code == ErrorCode::cancelled)
@@ -153,7 +149,7 @@ Status AccuracyRuns::planMotion(std::size_t variant, const Job &job)
          // What the solver refuses is told by the runs themselves.
          ladder.coarsest = m_plan.until / kStepsWithoutLimit;
          if (own)
-            ladder.coarsest = std::min(ladder.coarsest, kOwnSteps * *own);
+            ladder.coarsest = std::min(ladder.coarsest, kMostOwnSteps * *own);
       }
       m_ladders.push_back(std::move(ladder));
    }
@@ -181,8 +177,8 @@ void AccuracyRuns::addSteps()
       longest = std::max(longest, ladder.limit);
    const double stretches = longest > 0 ? m_plan.until / longest : kStepsWithoutLimit;
    const bool swings = m_plan.quantity.when == Quantity::When::frequency;
-   m_samples =
-       std::clamp<std::int64_t>(std::llround(std::min(stretches, 1e6)), 1, swings ? kSwings : kSamples);
+   m_samples = std::clamp<std::int64_t>(std::llround(std::min(stretches, 1e6)), 1,
+                                        swings ? kSwingSamples : kCurveSamples);
    const double stretch = m_plan.until / static_cast<double>(m_samples);
    for (std::size_t k = 0; k < m_ladders.size(); ++k) {
       AccuracyLadder &ladder = m_ladders[k];

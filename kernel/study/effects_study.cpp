@@ -1,5 +1,6 @@
 #include "study/effects_study.h"
 
+#include "core/clock.h"
 #include "core/text.h"
 #include "study/effects_scenes.h"
 #include "study/trial.h"
@@ -14,8 +15,6 @@
 namespace diatom {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr double kLeastTurn = 2e-3; // s, of the fastest scene of a row: a clock's own error is nothing to it
 constexpr double kStep = 0.45;      // of the shortest stable step of a row's scenes: no accuracy is asked for
@@ -223,7 +222,7 @@ Result<EffectsStudy> studyEffects(const std::shared_ptr<const Catalogue> &catalo
       found.rows.push_back(*std::move(row));
    }
    addMissing(found);
-   found.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+   found.seconds = secondsSince(start);
    return found;
 }
 
@@ -254,7 +253,7 @@ Result<EffectsStudy> studyEffectsOf(const std::shared_ptr<const Catalogue> &cata
          found.rows.push_back(std::move(failed));
       }
    }
-   found.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+   found.seconds = secondsSince(start);
    return found;
 }
 

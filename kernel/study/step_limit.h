@@ -8,6 +8,11 @@
 
 namespace diatom {
 
+/// Of the stable step, where a walk through step lengths begins: as the solvers' own choice.
+inline constexpr double kCoarsestStep = 0.9;
+/// Solvers that no step can upset choose theirs by the motion: at most this many of them are tried.
+inline constexpr double kMostOwnSteps = 4;
+
 struct StepLimit
 {
    double stableStep = 0;            // s; 0 when the solver has no limit

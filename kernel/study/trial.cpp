@@ -1,5 +1,6 @@
 #include "study/trial.h"
 
+#include "core/clock.h"
 #include "study/refine.h"
 
 #include <fmt/format.h>
@@ -64,7 +65,6 @@ Result<double> meanOf(const Simulation &simulation, const std::vector<std::int64
 Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Quantity &quantity,
                           double until, std::int64_t samples, std::int64_t perSample, const Job &job)
 {
-   using Clock = std::chrono::steady_clock;
    const double stretch = until / static_cast<double>(samples);
    const double step = stretch / static_cast<double>(perSample);
    const auto start = Clock::now();
@@ -77,7 +77,7 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
    if (!cells)
       return cells.error();
    TrialRun run;
-   run.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+   run.seconds = secondsSince(start);
    run.cells = simulation.scene().cells();
    run.step = step;
    std::vector<double> stretches;
@@ -89,7 +89,7 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
          if (const Status advanced = simulation.advance(time, job); !advanced)
             return advanced.error();
       if (k > 0)
-         stretches.push_back(std::chrono::duration<double>(Clock::now() - before).count());
+         stretches.push_back(secondsSince(before));
       const auto value = meanOf(simulation, *cells, quantity.channel, job);
       if (!value)
          return value.error();
@@ -106,12 +106,8 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
 Result<double> timeStep(const Subject &subject, const Values &values, double step, double until,
                         double seconds, const Job &job)
 {
-   using Clock = std::chrono::steady_clock;
    constexpr double kStretch = 2e-3; // s: the clock, the call and a look at the energies are nothing to it
    constexpr std::size_t kFewest = 3, kMost = 200;
-   const auto secondsSince = [](Clock::time_point start) {
-      return std::chrono::duration<double>(Clock::now() - start).count();
-   };
    auto started = startTrial(subject, values, step, job);
    if (!started)
       return started.error();
@@ -144,7 +140,6 @@ Result<double> timeStep(const Subject &subject, const Values &values, double ste
 Result<double> ownStep(const Subject &subject, const Values &values, double until, double seconds,
                        const Job &job)
 {
-   using Clock = std::chrono::steady_clock;
    constexpr int kStretches = 64; // after each of which the clock is looked at
    auto started = startTrial(subject, values, 0, job);
    if (!started)
@@ -155,7 +150,7 @@ Result<double> ownStep(const Subject &subject, const Values &values, double unti
    for (int k = 1; k <= kStretches; ++k) {
       if (const Status advanced = simulation.advance(until * k / kStretches, job); !advanced)
          return advanced.error();
-      if (std::chrono::duration<double>(Clock::now() - start).count() > seconds)
+      if (secondsSince(start) > seconds)
          break;
    }
    return simulation.time() / static_cast<double>(std::max<std::int64_t>(1, simulation.steps()));

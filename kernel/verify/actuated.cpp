@@ -12,16 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kRoot{0, 0, 0};
-
 /// A chain of an even number of bonds, each with a rest turn about z, clamped at its first cell.
 CaseScene bentChain(double pitch, const json &constants, int bonds, double turn)
 {
    CaseScene scene(pitch);
    ActuatedRow row(scene, constants);
    row.drive(Actuation::Mode::bending, turn);
-   row.fill(kRoot, bonds + 1);
-   scene.hold(kRoot);
+   row.fill(kOrigin, bonds + 1);
+   scene.hold(kOrigin);
    return scene;
 }
 
@@ -83,7 +81,7 @@ Status answerBend45(const Case &one, const Bench &bench, Findings &findings)
             return Tolerance::of(tol.at("continuum_rel_b"), length(expected.at(key)), "of its length");
          };
          findings.compare(path + "continuum_tip", {place.data(), 3}, continuum("continuum_tip"), "model b");
-         const Vec3 moment = answer->reaction(kRoot).moment;
+         const Vec3 moment = answer->reaction(kOrigin).moment;
          findings.compare(path + "continuum_root_torque", {moment.data(), 3},
                           continuum("continuum_root_torque"), "model b");
       }

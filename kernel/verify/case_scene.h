@@ -27,6 +27,8 @@ struct Bench
 /// unlike cells' constants, b_exact joins two half beams.
 Values modelValues(std::string_view model);
 inline constexpr const char *kModels[] = {"a", "b", "c"};
+/// Of the cell that most cases hold, or are about.
+inline constexpr Index kOrigin{0, 0, 0};
 
 /// A design of cubes that cases fill, and hold, drive and load.
 class CaseScene

@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kCell{0, 0, 0};
-
 void spin(CaseScene &scene, Where where, const Vec3 &omega, const std::optional<Vec3> &about = {})
 {
    Start start;
@@ -51,8 +49,8 @@ Status freeCube(const Case &one, const Bench &bench, Findings &findings)
 {
    const json &cube = one.content.at("free_cube");
    CaseScene scene(1e-3);
-   scene.cell(kCell, scene.add({}));
-   spin(scene, kCell, vectorOf(cube.at("omega")));
+   scene.cell(kOrigin, scene.add({}));
+   spin(scene, kOrigin, vectorOf(cube.at("omega")));
    scene.setup().step = 1e-3;
    const auto motion = motionOf(bench, scene, {});
    if (!motion)
@@ -77,8 +75,8 @@ Status freeBox(const Case &one, const json &box, const std::string &path, const 
    scene.stretch({1, edges.y() / edges.x(), edges.z() / edges.x()});
    Material material;
    material.density = box.at("mass").get<double>() / edges.prod();
-   scene.cell(kCell, scene.add(material));
-   spin(scene, kCell, vectorOf(box.at("omega0_body")));
+   scene.cell(kOrigin, scene.add(material));
+   spin(scene, kOrigin, vectorOf(box.at("omega0_body")));
    // The case's bars are those of 1000 steps a period. Near the intermediate axis every error grows as the
    // body tumbles, and the bars want shorter steps than that.
    const double step = integrator == "rk4" ? 5e-4 : 1e-4;

@@ -12,7 +12,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kCell{0, 0, 0};
 constexpr std::uint8_t kTurns = 0x38;
 
 class OnGround
@@ -51,8 +50,8 @@ CaseScene OnGround::cell(double gap, double stiffness, double damping, double fr
    CaseScene scene(m_pitch);
    Material material;
    material.density = m_mass / (m_pitch * m_pitch * m_pitch);
-   scene.cell(kCell, scene.add(material));
-   scene.hold(kCell, held);
+   scene.cell(kOrigin, scene.add(material));
+   scene.hold(kOrigin, held);
    scene.setup().gravity = {0, 0, -m_gravity};
    scene.setup().ground = {true, -0.5 * m_pitch - gap, stiffness, damping, friction};
    return scene;
@@ -133,7 +132,7 @@ Status OnGround::drop(std::size_t number)
    const auto still = balanceOf(m_bench, cell(0, k, c, 0, kTurns | 0x03), {});
    if (!still)
       return still.error();
-   m_findings.compare(path + "static_penetration", -still->displacement(kCell).z(), bar);
+   m_findings.compare(path + "static_penetration", -still->displacement(kOrigin).z(), bar);
    return {};
 }
 
@@ -143,7 +142,7 @@ Status OnGround::slide()
    const double stiffness = 2000, sunk = m_mass * m_gravity / stiffness, stop = slide.at("t_stop");
    CaseScene scene = cell(-sunk, stiffness, 0.5, slide.at("mu"));
    Start start;
-   start.where = kCell;
+   start.where = kOrigin;
    start.velocity[0] = slide.at("v0");
    scene.setup().starts.push_back(start);
    scene.setup().step = stop / 2e4;
@@ -217,8 +216,8 @@ Status OnGround::column()
    material.density = m_mass / (m_pitch * m_pitch * m_pitch);
    material.poissonRatio = 0;
    material.youngsModulus = k / m_pitch;
-   scene.box(kCell, {0, 0, n - 1}, scene.add(material));
-   scene.hold(kCell, kTurns | 0x03);
+   scene.box(kOrigin, {0, 0, n - 1}, scene.add(material));
+   scene.hold(kOrigin, kTurns | 0x03);
    scene.setup().gravity = {0, 0, -m_gravity};
    scene.setup().ground = {true, -0.5 * m_pitch, column.at("k_contact"), 0, 0};
    const auto still = balanceOf(m_bench, scene, {});
@@ -228,7 +227,7 @@ Status OnGround::column()
    std::vector<double> shortened;
    for (int i = 0; i + 1 < n; ++i)
       shortened.push_back(still->displacement({0, 0, i}).z() - still->displacement({0, 0, i + 1}).z());
-   m_findings.compare("column_at_rest.penetration_of_bottom_cell", -still->displacement(kCell).z(), bar);
+   m_findings.compare("column_at_rest.penetration_of_bottom_cell", -still->displacement(kOrigin).z(), bar);
    m_findings.compare("column_at_rest.bond_shortening_bottom_to_top", shortened, Tolerance::each(bar.most));
    m_findings.compare("column_at_rest.top_cell_lowering", -still->displacement({0, 0, n - 1}).z(), bar);
    return {};

@@ -1,5 +1,5 @@
 // Form "design": a design as it is saved, and quantities of it. For cases that need no form of their own.
-#include "document/files.h"
+#include "formats/files.h"
 #include "study/quantity.h"
 #include "verify/forms.h"
 

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSmall = 1e-4;
+constexpr double kSmallLoad = 1e-4;
 
 } // namespace
 
@@ -59,7 +59,7 @@ Result<Moved> pushed(const Case &one, const Bench &bench, const json &row, const
    if (row.at("geometric") != "linear")
       return under(1);
    // Proportional to the load: what two small opposite loads have in common is without second-order terms.
-   const auto there = under(kSmall), back = under(-kSmall);
+   const auto there = under(kSmallLoad), back = under(-kSmallLoad);
    if (!there || !back)
       return there ? back.error() : there.error();
    return Moved{0.5 * (there->ux + back->ux), 0.5 * (there->uy + back->uy), 0.5 * (there->rz + back->rz)};

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 /// What is proportional in the case is asked with this part of the load, and scaled back.
-constexpr double kSmall = 1e-4;
+constexpr double kSmallStart = 1e-4;
 
 class SpaceFrame
 {
@@ -89,15 +89,15 @@ double largest(const json &rows, const char *key)
 void SpaceFrame::statics(const std::string &model, Findings &findings) const
 {
    const std::string path = fmt::format("expected.{}.linear_static", model);
-   const auto answer = balanceOf(m_bench, loaded(kSmall), modelValues(model));
+   const auto answer = balanceOf(m_bench, loaded(kSmallStart), modelValues(model));
    if (!answer)
       return findings.fail(path + "*", answer.error().message);
    const json &rows = expected(model).at("linear_static");
    const double most = m_content.at("tol").at("linear_rel");
    for (std::size_t i = 0; i < rows.size(); ++i) {
       const Index at = indexOf(rows[i].at("cell"));
-      const Vec3 moved = answer->displacement(at) / kSmall,
-                 turned = rotationVector(answer->turn(at)) / kSmall;
+      const Vec3 moved = answer->displacement(at) / kSmallStart,
+                 turned = rotationVector(answer->turn(at)) / kSmallStart;
       findings.compare(fmt::format("{}.{}.u", path, i), {moved.data(), 3},
                        Tolerance::of(most, largest(rows, "u"), "of the largest displacement"));
       findings.compare(fmt::format("{}.{}.rot", path, i), {turned.data(), 3},
@@ -156,7 +156,7 @@ Status SpaceFrame::blow(const std::string &model, Findings &findings) const
               &linear = expected(model).at("linear_static");
    const json &start = m_content.at("initial_velocity_for_impulse");
    CaseScene scene = m_scene;
-   const Vec3 velocity = kSmall * vectorOf(start.at("v"));
+   const Vec3 velocity = kSmallStart * vectorOf(start.at("v"));
    Start first;
    first.where = indexOf(start.at("cell"));
    first.velocity = {velocity.x(), velocity.y(), velocity.z()};
@@ -178,7 +178,7 @@ Status SpaceFrame::blow(const std::string &model, Findings &findings) const
          const auto u = displacementOf(**motion, indexOf(linear.at(c).at("cell")), *m_bench.job);
          if (!u)
             return u.error();
-         const Vec3 moved = *u / kSmall;
+         const Vec3 moved = *u / kSmallStart;
          findings.compare(fmt::format("expected.{}.impulse_response_linear.{}.u.{}", model, i, c),
                           {moved.data(), 3},
                           Tolerance::of(m_content.at("tol").at("impulse_over_peak"), peak, "of the peak"));

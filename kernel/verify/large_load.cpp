@@ -13,13 +13,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kRoot{0, 0, 0};
-
 CaseScene clampedChain(const Case &one, const json &material, int bonds)
 {
    CaseScene scene(one.content.at("lattice").at("pitch"));
-   scene.box(kRoot, {bonds, 0, 0}, scene.materialOf(material));
-   scene.hold(kRoot);
+   scene.box(kOrigin, {bonds, 0, 0}, scene.materialOf(material));
+   scene.hold(kOrigin);
    return scene;
 }
 
@@ -198,7 +196,7 @@ Status answerRightAngleFrame(const Case &one, const Bench &bench, Findings &find
       for (const std::string model : kModels) {
          CaseScene scene(content.at("lattice").at("pitch"));
          scene.boxes(content.at("cells"), scene.materialOf(content.at("materials").at("m")));
-         scene.hold(kRoot);
+         scene.hold(kOrigin);
          const Index loaded = indexOf(scenario.at("load").at("cell"));
          scene.load(loaded, vectorOf(scenario.at("load").at("force")));
          const auto answer = balanceOf(bench, scene, modelValues(model));

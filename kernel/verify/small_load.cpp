@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kRoot{0, 0, 0};
-
 /// What is read at the tip of a chain along x.
 struct Tip
 {
@@ -28,7 +26,7 @@ Result<Tip> tipOf(const Bench &bench, const CaseScene &scene, int last, const ch
    if (!answer)
       return answer.error();
    const Index tip{last, 0, 0};
-   return Tip{answer->displacement(tip), rotationVector(answer->turn(tip)), answer->reaction(kRoot)};
+   return Tip{answer->displacement(tip), rotationVector(answer->turn(tip)), answer->reaction(kOrigin)};
 }
 
 bool startsWith(const std::string &text, std::string_view start) { return text.starts_with(start); }
@@ -56,7 +54,7 @@ private:
    {
       CaseScene scene(m_case.at("lattice").at("pitch"));
       scene.boxes(m_scenario.at("cells"), scene.materialOf(m_case.at("materials").at("mat")));
-      scene.hold(kRoot);
+      scene.hold(kOrigin);
       return scene;
    }
 
@@ -185,7 +183,7 @@ CaseScene chainOf(const Case &one, const std::string &letters, const std::map<ch
       materials[letter] = scene.material(k);
    for (std::size_t i = 0; i < letters.size(); ++i)
       scene.cell({static_cast<std::int32_t>(i), 0, 0}, materials.at(letters[i]));
-   scene.hold(kRoot);
+   scene.hold(kOrigin);
    return scene;
 }
 

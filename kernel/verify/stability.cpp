@@ -13,13 +13,11 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kRoot{0, 0, 0};
-
 CaseScene column(const Case &one, const json &scenario, double load)
 {
    CaseScene scene(one.content.at("lattice").at("pitch"));
    scene.boxes(scenario.at("cells"), scene.materialOf(one.content.at("materials").at("m")));
-   scene.hold(kRoot);
+   scene.hold(kOrigin);
    scene.load({scenario.at("N_bonds").get<int>(), 0, 0}, -load * Vec3::Unit(0));
    return scene;
 }

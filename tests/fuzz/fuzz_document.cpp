@@ -1,5 +1,5 @@
 // Any bytes at all are either a design, which then survives a round trip, or a sentence.
-#include "document/files.h"
+#include "formats/files.h"
 
 #include "core/check.h"
 

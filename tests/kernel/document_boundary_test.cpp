@@ -1,7 +1,7 @@
 // Commands on supports, drives, loads and starts: what each does on cells, regions and materials, how it is
 // undone, and what it refuses.
 #include "document/document.h"
-#include "document/files.h"
+#include "formats/files.h"
 #include "tests/kernel/document_run.h"
 #include "tests/support/support.h"
 

@@ -2,7 +2,7 @@
 // same hash.
 #include "core/file.h"
 #include "document/document.h"
-#include "document/files.h"
+#include "formats/files.h"
 #include "scene/networks.h"
 #include "tests/kernel/document_run.h"
 #include "tests/support/support.h"

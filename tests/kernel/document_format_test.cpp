@@ -1,7 +1,7 @@
 // .diatom documents: exact round trips, the same bytes for the same design, and one sentence for every bad
 // file.
-#include "document/files.h"
 #include "document/json_text.h"
+#include "formats/files.h"
 #include "tests/kernel/document_designs.h"
 #include "tests/support/support.h"
 

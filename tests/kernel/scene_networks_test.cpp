@@ -1,6 +1,6 @@
 // Nets, actuators and wiring problems: the earlier programs' mechanisms against the fact sheet's counts, and
 // a minimal assembly for each kind of fault.
-#include "document/files.h"
+#include "formats/files.h"
 #include "kernel/scene_workbench.h"
 #include "scene/networks.h"
 #include "scene/problems.h"

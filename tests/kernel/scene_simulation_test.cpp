@@ -1,6 +1,6 @@
 // Scenes run through the installed solver: known sags and strokes, conserved quantities, refusals, cancel,
 // and the same bits for any number of threads.
-#include "document/files.h"
+#include "formats/files.h"
 #include "kernel/scene_workbench.h"
 #include "scene/simulation.h"
 

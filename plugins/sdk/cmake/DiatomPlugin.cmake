@@ -38,6 +38,7 @@ function(diatom_add_plugin folder)
       ${DIATOM_PLUGIN_OUTPUT_DIRECTORY}/${kind}/${name}/plugin.json)
   if(COMMAND diatom_warnings)
     diatom_warnings(${target})
+    diatom_unity(${target})
   endif()
   # A plugin may need more than the SDK (Qt for scripts): its own optional plugin.cmake says so.
   if(EXISTS ${folder}/plugin.cmake)

@@ -10,3 +10,6 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   set_property(SOURCE ${folder}/explicit/sweep_f32.cpp ${folder}/explicit/sweep_f64.cpp
     APPEND PROPERTY COMPILE_OPTIONS -mtune=skylake-avx512)
 endif()
+# Compiled once for each instruction set: nothing can share their files.
+set_property(SOURCE ${folder}/explicit/sweep_f32.cpp ${folder}/explicit/sweep_f64.cpp
+  PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)

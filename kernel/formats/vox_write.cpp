@@ -1,6 +1,6 @@
-#include "document/vox.h"
+#include "formats/vox.h"
 
-#include "document/vox_format.h"
+#include "formats/vox_format.h"
 
 #include <fmt/format.h>
 

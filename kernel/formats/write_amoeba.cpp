@@ -1,7 +1,7 @@
-#include "document/earlier_programs.h"
+#include "formats/earlier_programs.h"
 
 #include "core/text.h"
-#include "document/write_dense.h"
+#include "formats/write_dense.h"
 
 #include <fmt/format.h>
 

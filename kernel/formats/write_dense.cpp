@@ -1,4 +1,4 @@
-#include "document/write_dense.h"
+#include "formats/write_dense.h"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "document/vox_format.h"
+#include "formats/vox_format.h"
 
 #include "core/text.h"
 

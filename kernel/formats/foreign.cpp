@@ -1,8 +1,8 @@
-#include "document/foreign.h"
+#include "formats/foreign.h"
 
-#include "document/earlier_programs.h"
-#include "document/vox.h"
-#include "document/voxcad.h"
+#include "formats/earlier_programs.h"
+#include "formats/vox.h"
+#include "formats/voxcad.h"
 
 #include <algorithm>
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/job.h"
-#include "document/files.h"
 #include "document/json_place.h"
+#include "formats/files.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 // Files of the earlier programs: counts, bounds and set-ups of their published demos, and small files made
 // here.
-#include "document/files.h"
+#include "formats/files.h"
 #include "tests/support/support.h"
 
 #include <nlohmann/json.hpp>
@@ -60,7 +60,7 @@ Result<Opened> amoeba(const std::string &assembly, const std::string &sim)
 
 } // namespace
 
-class document_import_test : public QObject
+class formats_import_test : public QObject
 {
    Q_OBJECT
 
@@ -313,5 +313,5 @@ private slots:
    }
 };
 
-QTEST_APPLESS_MAIN(document_import_test)
-#include "document_import_test.moc"
+QTEST_APPLESS_MAIN(formats_import_test)
+#include "formats_import_test.moc"

@@ -4,13 +4,16 @@
 
 #include "core/job.h"
 #include "core/result.h"
-#include "document/files.h"
+#include "formats/files.h"
 
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace diatom {
+
+/// Of a file: memory and time of a reader are bounded by what the file says.
+inline constexpr double kMostVoxels = 4e9;
 
 /// Whether XML text holds one.
 bool isVoxcad(std::string_view bytes);

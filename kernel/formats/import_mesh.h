@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/job.h"
-#include "document/files.h"
+#include "formats/files.h"
 #include "io/voxelize.h"
 
 #include <filesystem>

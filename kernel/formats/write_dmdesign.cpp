@@ -1,7 +1,7 @@
-#include "document/earlier_programs.h"
+#include "formats/earlier_programs.h"
 
-#include "document/dmdesign_names.h"
-#include "document/write_dense.h"
+#include "formats/dmdesign_names.h"
+#include "formats/write_dense.h"
 #include "scene/where.h"
 
 #include <fmt/format.h>

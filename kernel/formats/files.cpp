@@ -1,11 +1,11 @@
-#include "document/files.h"
+#include "formats/files.h"
 
 #include "core/file.h"
 #include "document/format.h"
-#include "document/importers.h"
 #include "document/json_text.h"
-#include "document/vox.h"
-#include "document/voxcad.h"
+#include "formats/importers.h"
+#include "formats/vox.h"
+#include "formats/voxcad.h"
 #include "io/mesh_read.h"
 
 #include <fmt/format.h>

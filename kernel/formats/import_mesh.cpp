@@ -1,4 +1,4 @@
-#include "document/import_mesh.h"
+#include "formats/import_mesh.h"
 
 #include "cells/runs.h"
 #include "core/text.h"

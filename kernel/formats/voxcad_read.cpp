@@ -1,4 +1,4 @@
-#include "document/voxcad.h"
+#include "formats/voxcad.h"
 
 #include "core/base64.h"
 #include "core/text.h"
@@ -17,7 +17,6 @@ namespace diatom {
 
 namespace {
 
-constexpr double kMostCells = 4e9;
 constexpr std::int32_t kMostSide = 1'000'000;
 
 std::optional<std::string> inflated(const std::string &packed, std::size_t size)
@@ -142,7 +141,7 @@ private:
          m_size[k] = static_cast<std::int32_t>(number(structure, kSides[k], 0, 1, kMostSide));
       if (m_size[0] == 0 || m_size[1] == 0 || m_size[2] == 0)
          fail(structure, "the number of voxels along an axis is missing");
-      if (double(m_size[0]) * m_size[1] * m_size[2] > kMostCells)
+      if (double(m_size[0]) * m_size[1] * m_size[2] > kMostVoxels)
          fail(structure, "more voxels than can be read");
       if (!m_error.empty())
          return;
@@ -236,12 +235,12 @@ private:
                                                                     : environment.child("Fixed_Regions");
       int other = 0;
       for (const auto region : regions.children("FRegion")) {
-         constexpr std::array<const char *, 3> kStart{"X", "Y", "Z"}, kSide{"dX", "dY", "dZ"};
+         constexpr std::array<const char *, 3> kStarts{"X", "Y", "Z"}, kSides{"dX", "dY", "dZ"};
          std::array<std::int32_t, 3> low{}, high{};
          for (std::size_t k = 0; k < 3; ++k) {
             // A cell is in the region when its centre is.
-            const double from = number(region, kStart[k], 0, -1e3, 1e3),
-                         side = number(region, kSide[k], 1, 0, 1e3);
+            const double from = number(region, kStarts[k], 0, -1e3, 1e3),
+                         side = number(region, kSides[k], 1, 0, 1e3);
             low[k] = static_cast<std::int32_t>(std::ceil(from * m_size[k] - 0.5 - 1e-9));
             high[k] = static_cast<std::int32_t>(std::floor((from + side) * m_size[k] - 0.5 + 1e-9));
          }

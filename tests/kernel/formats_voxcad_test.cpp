@@ -1,6 +1,6 @@
 // VoxCAD's files in and out: cells, palette, sizes and what physics they carry; broken files do no harm.
 #include "core/base64.h"
-#include "document/voxcad.h"
+#include "formats/voxcad.h"
 #include "support/scenes.h"
 
 #include <random>
@@ -226,4 +226,4 @@ void DocumentVoxcadTest::base64IsThatOfTheStandard()
 }
 
 QTEST_APPLESS_MAIN(DocumentVoxcadTest)
-#include "document_voxcad_test.moc"
+#include "formats_voxcad_test.moc"

@@ -4,7 +4,7 @@
 
 #include "core/job.h"
 #include "core/result.h"
-#include "document/files.h"
+#include "formats/files.h"
 
 #include <string>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "document/voxcad.h"
+#include "formats/voxcad.h"
 
 #include "core/base64.h"
 #include "core/text.h"
@@ -14,8 +14,6 @@
 namespace diatom {
 
 namespace {
-
-constexpr double kMostCells = 4e9;
 
 std::string deflated(const std::string &bytes)
 {
@@ -78,7 +76,7 @@ private:
              fmt::format("VoxCAD knows cubes only, this design is on {}; export a mesh instead", lattice.id)};
       if (m_bounds.empty())
          return Error{ErrorCode::invalid, "there are no cells to write"};
-      if (m_bounds.volume() > kMostCells)
+      if (m_bounds.volume() > kMostVoxels)
          return Error{ErrorCode::invalid,
                       "VoxCAD's files hold every place of the box around the cells, which is too "
                       "large here; write a part of the design"};

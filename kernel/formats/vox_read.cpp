@@ -1,7 +1,7 @@
-#include "document/vox.h"
+#include "formats/vox.h"
 
 #include "document/cell_text.h"
-#include "document/vox_format.h"
+#include "formats/vox_format.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // AMOEBA's assemblies (its first engine's files, and the same demos with the ids of its second).
 #include "document/cell_text.h"
 #include "document/format.h"
-#include "document/importers.h"
+#include "formats/importers.h"
 
 #include "core/text.h"
 

@@ -1,8 +1,8 @@
 // Files of the earlier programs out and in again: the same cells, composites and supports.
 #include "core/file.h"
-#include "document/earlier_programs.h"
-#include "document/files.h"
-#include "document/foreign.h"
+#include "formats/earlier_programs.h"
+#include "formats/files.h"
+#include "formats/foreign.h"
 #include "support/scenes.h"
 
 using namespace diatom;
@@ -208,4 +208,4 @@ void DocumentExportTest::formatsAreToldByNameOrSuffix()
 }
 
 QTEST_APPLESS_MAIN(DocumentExportTest)
-#include "document_export_test.moc"
+#include "formats_export_test.moc"

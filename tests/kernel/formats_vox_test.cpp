@@ -1,6 +1,6 @@
 // MagicaVoxel's files in and out: cells, colours and poses survive; broken files do no harm.
-#include "document/vox.h"
-#include "document/vox_format.h"
+#include "formats/vox.h"
+#include "formats/vox_format.h"
 #include "support/scenes.h"
 
 #include <random>
@@ -256,4 +256,4 @@ void DocumentVoxTest::brokenFilesAreRefused()
 }
 
 QTEST_APPLESS_MAIN(DocumentVoxTest)
-#include "document_vox_test.moc"
+#include "formats_vox_test.moc"

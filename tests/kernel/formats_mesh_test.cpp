@@ -1,7 +1,7 @@
 // Mesh files of other programs as designs: sizes, units, pieces and colours, and bad files.
 #include "cells/hierarchy.h"
 #include "core/file.h"
-#include "document/import_mesh.h"
+#include "formats/import_mesh.h"
 #include "io/geometry_file.h"
 #include "io/mesh_read.h"
 #include "support/meshes.h"
@@ -274,4 +274,4 @@ void DocumentMeshTest::aSolidSmallerThanACellIsRefusedWithItsSize()
 }
 
 QTEST_APPLESS_MAIN(DocumentMeshTest)
-#include "document_mesh_test.moc"
+#include "formats_mesh_test.moc"

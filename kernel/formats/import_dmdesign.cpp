@@ -1,7 +1,7 @@
 // DMDesign's assemblies and composite definitions, with the rules of its deployed version.
 #include "document/cell_text.h"
-#include "document/dmdesign_names.h"
-#include "document/importers.h"
+#include "formats/dmdesign_names.h"
+#include "formats/importers.h"
 
 #include "core/text.h"
 

@@ -1,6 +1,6 @@
 // What the files of both earlier programs have in common.
-#include "document/importers.h"
 #include "document/json_text.h"
+#include "formats/importers.h"
 
 #include <fmt/format.h>
 
