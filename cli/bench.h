@@ -69,6 +69,7 @@ struct Benchmark
 
 std::span<const Benchmark> cellBenchmarks();
 std::span<const Benchmark> exportBenchmarks();
+std::span<const Benchmark> importBenchmarks();
 std::span<const Benchmark> mechanicsBenchmarks();
 
 /// Of this process, now; 0 where nothing tells.

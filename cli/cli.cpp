@@ -139,16 +139,22 @@ std::shared_ptr<const Catalogue> Context::catalogue()
    return m_catalogue;
 }
 
-std::unique_ptr<Context::Input> Context::open(const std::string &file)
+std::optional<Opened> Context::read(const std::string &file)
 {
    auto opened = openDesign(file, *m_job);
    if (!opened) {
       fail(opened.error());
-      return nullptr;
+      return std::nullopt;
    }
    for (const std::string &text : opened->notes)
       note(text);
-   return prepare(*std::move(opened));
+   return *std::move(opened);
+}
+
+std::unique_ptr<Context::Input> Context::open(const std::string &file)
+{
+   auto opened = read(file);
+   return opened ? prepare(*std::move(opened)) : nullptr;
 }
 
 std::unique_ptr<Context::Input> Context::prepare(Opened opened)

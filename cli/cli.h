@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,8 @@ public:
    Job &job() { return *m_job; }
    std::shared_ptr<const Catalogue> catalogue();
 
+   /// A file with its notes told. On failure prints the error and sets `exit`.
+   std::optional<Opened> read(const std::string &file);
    /// A file opened with its lattice and hierarchy. On failure prints the error and sets `exit`.
    struct Input
    {

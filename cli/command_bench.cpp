@@ -26,6 +26,7 @@ struct Group
 constexpr Group kGroups[] = {
     {"cells", cellBenchmarks},
     {"export", exportBenchmarks},
+    {"import", importBenchmarks},
     {"mechanics", mechanicsBenchmarks},
 };
 

@@ -15,7 +15,7 @@ namespace diatom::cli {
 
 namespace {
 
-constexpr double kDefaultRows = 200, kMostRows = 1e7;
+constexpr double kSignalRows = 200, kMostRows = 1e7;
 
 struct CircuitOptions
 {
@@ -57,7 +57,7 @@ nlohmann::ordered_json describe(const Networks &networks, const Setup &setup)
 Status writeVoltages(const Networks &networks, const Setup &setup, const CircuitOptions &options,
                      const Job &job)
 {
-   const double every = options.every > 0 ? options.every : options.until / kDefaultRows;
+   const double every = options.every > 0 ? options.every : options.until / kSignalRows;
    if (options.until / every > kMostRows)
       return Error{ErrorCode::usage, "--every is too short: the table would have more than ten million rows"};
    AtomicFile file(options.output);

@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <memory>
 
@@ -60,9 +61,38 @@ nlohmann::ordered_json definitionsJson(const Context::Input &input)
    return rows;
 }
 
+/// What can be said of cells whose lattice is not installed: nothing about where they are.
+void showStored(Context &context, const Opened &opened)
+{
+   const Model &model = opened.design.model;
+   std::uint64_t stored = model.root.cells.count();
+   for (const auto &[id, definition] : model.definitions)
+      stored += definition->body.cells.count();
+   context.print({{"name", opened.design.name},
+                  {"format", opened.format},
+                  {"lattice", model.lattice.id},
+                  {"lattice_installed", false},
+                  {"pitch_m", model.lattice.pitch},
+                  {"stored_cells", stored},
+                  {"composites", model.definitions.size()},
+                  {"hash", opened.design.hash().text()}});
+}
+
 void showInfo(Context &context, const std::string &file)
 {
-   const auto input = context.open(file);
+   auto opened = context.read(file);
+   if (!opened)
+      return;
+   const std::string &lattice = opened->design.model.lattice.id;
+   if (!context.catalogue()->offer(DIATOM_LATTICE_1, lattice)) {
+      context.note(fmt::format(
+          "{}: the lattice {} is not installed; the design opens and saves unchanged, and is shown "
+          "once it is (`diatom plugins` lists what there is)",
+          file, lattice));
+      showStored(context, *opened);
+      return;
+   }
+   const auto input = context.prepare(*std::move(opened));
    if (!input)
       return;
    const Hierarchy &hierarchy = *input->hierarchy;
@@ -83,6 +113,7 @@ void showInfo(Context &context, const std::string &file)
                   {"supports", design.setup.supports.size()},
                   {"loads", design.setup.loads.size()},
                   {"sources", design.setup.sources.size()},
+                  {"reference_meshes", design.referenceMeshes.size()},
                   {"hash", design.hash().text()}});
 }
 

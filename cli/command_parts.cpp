@@ -22,7 +22,7 @@ nlohmann::ordered_json typesOf(const PartMaker &maker)
 }
 
 /// One row per thing on offer; one that cannot be created tells why in its verdict.
-nlohmann::ordered_json rowOf(const Provided &provided, const Candidate &candidate, Context &context)
+nlohmann::ordered_json partsRow(const Provided &provided, const Candidate &candidate, Context &context)
 {
    nlohmann::ordered_json row{{"id", provided.id}, {"name", provided.name}, {"verdict", candidate.verdict}};
    if (candidate.accepted) {
@@ -47,7 +47,7 @@ void listKinds(Context &context)
    for (const Candidate &candidate : context.catalogue()->candidates())
       for (const Provided &provided : candidate.manifest.provides)
          if (provided.interface == DIATOM_PARTS_1)
-            rows.push_back(rowOf(provided, candidate, context));
+            rows.push_back(partsRow(provided, candidate, context));
    if (!context.json)
       for (auto &row : rows) {
          std::string names;

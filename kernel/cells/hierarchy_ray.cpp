@@ -56,8 +56,6 @@ struct Ray
    Vec3 origin, direction, indexOrigin, indexDirection, reciprocal;
 };
 
-Vec3 vec(Index i) { return {double(i.x), double(i.y), double(i.z)}; }
-
 struct Crossing
 {
    Span span;

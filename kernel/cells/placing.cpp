@@ -28,8 +28,6 @@ Box integersWithin(const Vec3 &low, const Vec3 &high)
    return {{down(low.x()), down(low.y()), down(low.z())}, {up(high.x()), up(high.y()), up(high.z())}};
 }
 
-Vec3 vec(Index i) { return {double(i.x), double(i.y), double(i.z)}; }
-
 /// Range of matrix times the box [low, high].
 void transformRange(const Mat3 &matrix, Vec3 &low, Vec3 &high)
 {

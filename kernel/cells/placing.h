@@ -18,6 +18,8 @@ struct Plane
    double distance = 0;
 };
 
+inline Vec3 vec(Index i) { return {double(i.x), double(i.y), double(i.z)}; }
+
 /// What the hierarchy derives from a lattice once. Immutable; any thread.
 ///
 /// With basis B, site offsets f and rotation R a placement (o, R) takes index l to w, where

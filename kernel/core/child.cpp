@@ -1,16 +1,19 @@
 #include "core/child.h"
 
+#include "core/clock.h"
+
 #include <fmt/format.h>
 
 #include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 
 namespace diatom {
 
@@ -28,30 +31,80 @@ constexpr bool kMayFork = true;
 constexpr bool kMayFork = true;
 #endif
 
-constexpr char kWhole = '.'; // after the last byte: the child came to its end
+// What goes through the pipe: a byte 0 to 100 for each percent that is done, kResult, the bytes, kWhole.
+constexpr unsigned char kResult = 0xff;
+constexpr char kWhole = '.';
 
-[[noreturn]] void beChild(int out, const std::function<std::string()> &work)
+bool writeAll(int out, std::string_view bytes)
+{
+   while (!bytes.empty()) {
+      const ssize_t put = write(out, bytes.data(), bytes.size());
+      if (put <= 0)
+         return false;
+      bytes.remove_prefix(static_cast<std::size_t>(put));
+   }
+   return true;
+}
+
+[[noreturn]] void beChild(int out, const std::function<std::string(const ChildProgress &)> &work)
 {
    std::signal(SIGPIPE, SIG_DFL);
-   std::string bytes = work() + kWhole;
-   for (std::size_t at = 0; at < bytes.size();) {
-      const ssize_t put = write(out, bytes.data() + at, bytes.size() - at);
-      if (put <= 0)
-         break;
-      at += static_cast<std::size_t>(put);
-   }
+   int told = 0;
+   const std::string bytes = work([&](double fraction) {
+      const int percent = fraction > 0 ? static_cast<int>(100 * std::min(fraction, 1.0)) : 0;
+      if (percent > told) {
+         told = percent;
+         const char byte = static_cast<char>(percent);
+         writeAll(out, {&byte, 1});
+      }
+   });
+   const char result = static_cast<char>(kResult);
+   if (writeAll(out, {&result, 1}) && writeAll(out, bytes))
+      writeAll(out, {&kWhole, 1});
    _exit(0); // nothing that the parent has begun is ended twice
 }
 
-/// Reads until the other end closes. What went wrong, or nothing.
-Status readAll(int in, std::string &bytes, double seconds, const Job &job)
+/// What comes through the pipe, told or kept.
+class Receiver
 {
-   const auto start = std::chrono::steady_clock::now();
+public:
+   Receiver(std::string_view what, const Job &job) : m_what(what), m_job(job) {}
+
+   void take(std::string_view bytes)
+   {
+      for (; !m_begun && !bytes.empty(); bytes.remove_prefix(1)) {
+         const auto byte = static_cast<unsigned char>(bytes.front());
+         m_begun = byte == kResult;
+         if (!m_begun)
+            m_job.progress(byte / 100.0, m_what);
+      }
+      m_bytes.append(bytes);
+   }
+   /// The bytes, when all have come.
+   std::optional<std::string> result()
+   {
+      if (m_bytes.empty() || m_bytes.back() != kWhole)
+         return std::nullopt;
+      m_bytes.pop_back();
+      return std::move(m_bytes);
+   }
+
+private:
+   std::string_view m_what;
+   const Job &m_job;
+   bool m_begun = false;
+   std::string m_bytes;
+};
+
+/// Reads until the other end closes. What went wrong, or nothing.
+Status readAll(int in, Receiver &receiver, double seconds, const Job &job)
+{
+   const auto start = Clock::now();
    std::array<char, 1 << 16> part;
    for (;;) {
       if (job.cancelled())
          return Error{ErrorCode::cancelled, "it was cancelled"};
-      if (std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() > seconds)
+      if (secondsSince(start) > seconds)
          return Error{ErrorCode::timeLimit, fmt::format("it took longer than {:.0f} s", seconds)};
       pollfd wait{in, POLLIN, 0};
       if (poll(&wait, 1, 50) <= 0)
@@ -61,17 +114,20 @@ Status readAll(int in, std::string &bytes, double seconds, const Job &job)
          continue;
       if (got <= 0)
          return {};
-      bytes.append(part.data(), static_cast<std::size_t>(got));
+      receiver.take({part.data(), static_cast<std::size_t>(got)});
    }
 }
 
 } // namespace
 
-Result<std::string> runInChild(const std::function<std::string()> &work, double seconds, const Job &job)
+Result<std::string> runInChild(const std::function<std::string(const ChildProgress &)> &work, double seconds,
+                               std::string_view what, const Job &job)
 {
+   const auto inPlace = [&] { return work([&](double fraction) { job.progress(fraction, what); }); };
+   job.progress(0, what);
    std::array<int, 2> ends{};
    if (!kMayFork || pipe(ends.data()) != 0)
-      return work();
+      return inPlace();
    const pid_t child = fork();
    if (child == 0) {
       close(ends[0]);
@@ -80,10 +136,10 @@ Result<std::string> runInChild(const std::function<std::string()> &work, double 
    close(ends[1]);
    if (child < 0) {
       close(ends[0]);
-      return work();
+      return inPlace();
    }
-   std::string bytes;
-   const Status read = readAll(ends[0], bytes, seconds, job);
+   Receiver receiver(what, job);
+   const Status read = readAll(ends[0], receiver, seconds, job);
    close(ends[0]);
    if (!read)
       kill(child, SIGKILL);
@@ -94,10 +150,10 @@ Result<std::string> runInChild(const std::function<std::string()> &work, double 
       return read.error();
    if (WIFSIGNALED(status))
       return Error{ErrorCode::internal, fmt::format("it ended in a crash ({})", strsignal(WTERMSIG(status)))};
-   if (bytes.empty() || bytes.back() != kWhole)
+   auto bytes = receiver.result();
+   if (!bytes)
       return Error{ErrorCode::internal, "it ended before it was done"};
-   bytes.pop_back();
-   return bytes;
+   return *std::move(bytes);
 }
 
 } // namespace diatom

@@ -1,5 +1,7 @@
 #include "document/cell_text.h"
 
+#include "document/format.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,8 +19,6 @@ struct Block
    Cell cell;
    Box box;
 };
-
-ordered_json indexJson(Index i) { return ordered_json::array({i.x, i.y, i.z}); }
 
 std::int32_t coordinate(const Index &i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }
 std::int32_t &coordinate(Index &i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }

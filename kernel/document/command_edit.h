@@ -63,6 +63,6 @@ std::string countText(const char *what, std::size_t cells); // "place" for one, 
 
 // The commands, by subject.
 extern const std::span<const Command> kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands,
-    kBoundaryCommands, kSetupCommands;
+    kBoundaryCommands, kSetupCommands, kReferenceCommands;
 
 } // namespace diatom

@@ -13,7 +13,7 @@ std::vector<Command> allCommands()
 {
    std::vector<Command> all;
    for (const auto part : {kCellCommands, kRegionCommands, kCompositeCommands, kMaterialCommands,
-                           kBoundaryCommands, kSetupCommands})
+                           kBoundaryCommands, kSetupCommands, kReferenceCommands})
       all.insert(all.end(), part.begin(), part.end());
    return all;
 }

@@ -18,6 +18,8 @@ Hash Design::hash() const
    hasher.add(std::string_view(jsonLine(valuesJson(assembly.partsValues))));
    hasher.add(std::string_view(assembly.machine));
    hasher.add(std::string_view(jsonLine(valuesJson(assembly.machineValues))));
+   for (const ReferenceMesh &reference : referenceMeshes)
+      hasher.add(std::string_view(jsonLine(referenceMeshJson(reference))));
    hasher.add(std::string_view(jsonLine(unknown)));
    return hasher.finish();
 }

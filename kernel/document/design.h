@@ -3,11 +3,13 @@
 
 #include "assembly/plan.h"
 #include "cells/model.h"
+#include "document/reference_mesh.h"
 #include "scene/setup.h"
 
 #include <nlohmann/json.hpp>
 
 #include <string>
+#include <vector>
 
 namespace diatom {
 
@@ -17,6 +19,7 @@ struct Design
    Model model;
    Setup setup;
    AssemblySetup assembly;
+   std::vector<ReferenceMesh> referenceMeshes;
    /// Keys this version does not know, by their JSON pointer; written back where they were.
    nlohmann::json unknown = nlohmann::json::object();
 

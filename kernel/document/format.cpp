@@ -45,6 +45,8 @@ public:
       if (!assembly.parts.empty() || !assembly.partsValues.empty())
          json["parts"] = {{"id", assembly.parts}, {"values", valuesJson(assembly.partsValues)}};
       json["machine"] = {{"id", assembly.machine}, {"values", valuesJson(assembly.machineValues)}};
+      for (const ReferenceMesh &reference : m_design.referenceMeshes)
+         json["reference_meshes"].push_back(referenceMeshJson(reference));
       putUnknown(json);
       if (m_error)
          return *m_error;
@@ -132,7 +134,7 @@ public:
       if (!top.object())
          return {};
       top.known({"diatom", "name", "lattice", "materials", "definitions", "assembly", "simulation", "parts",
-                 "machine"});
+                 "machine", "reference_meshes"});
       m_design.name = top.textOr("name", "");
       readLattice(top.at("lattice"));
       readMaterials(top.at("materials"));
@@ -146,6 +148,8 @@ public:
          readChoice(top.at("parts"), m_design.assembly.parts, m_design.assembly.partsValues);
       if (top.has("machine"))
          readChoice(top.at("machine"), m_design.assembly.machine, m_design.assembly.machineValues);
+      if (top.has("reference_meshes"))
+         m_design.referenceMeshes = readReferenceMeshes(top.at("reference_meshes"));
       m_design.unknown = std::move(top.log().unknown);
       return std::move(m_design);
    }

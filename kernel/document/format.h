@@ -38,6 +38,10 @@ nlohmann::ordered_json loadJson(const Load &load);
 Load readLoad(const JsonPlace &place);
 nlohmann::ordered_json startJson(const Start &start);
 Start readStart(const JsonPlace &place);
+nlohmann::ordered_json referenceMeshJson(const ReferenceMesh &reference);
+ReferenceMesh readReferenceMesh(const JsonPlace &place);
+/// Refuses two of one name.
+std::vector<ReferenceMesh> readReferenceMeshes(const JsonPlace &list);
 nlohmann::ordered_json valuesJson(const Values &values);
 nlohmann::ordered_json fixedJson(std::uint8_t fixed);
 std::uint8_t readFixed(const JsonPlace &place);

@@ -4,6 +4,8 @@
 #include "formats/vox.h"
 #include "formats/voxcad.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace diatom {
@@ -26,6 +28,15 @@ constexpr ForeignFormat kFormats[] = {
 } // namespace
 
 std::span<const ForeignFormat> foreignFormats() { return kFormats; }
+
+Result<std::string> writeForeign(const ForeignFormat &format, const Design &design,
+                                 const Hierarchy &hierarchy, std::vector<std::string> &notes, const Job &job)
+{
+   if (!design.referenceMeshes.empty())
+      notes.push_back(fmt::format("{} reference meshes are left out: {} has none",
+                                  design.referenceMeshes.size(), format.program));
+   return format.write(design, hierarchy, notes, job);
+}
 
 const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem::path &file)
 {

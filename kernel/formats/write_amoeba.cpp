@@ -15,16 +15,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<const char *, 9> kKnown = {"fiberGlass", "insulating", "flexure",
-                                                "brass",      "conductive", "flexureCond",
-                                                "piezo",      "actuator",   "signal"};
+constexpr std::array<const char *, 9> kMaterials = {"fiberGlass", "insulating", "flexure",
+                                                    "brass",      "conductive", "flexureCond",
+                                                    "piezo",      "actuator",   "signal"};
 constexpr std::array<const char *, 4> kWaveforms = {"sine", "square", "saw", "triangle"};
 /// Softer materials than this are flexures: the program's two insulators have 5e5 and 3e4 Pa at 1 mm.
 constexpr double kFlexure = 1e5;
 
 std::string materialFor(const Material &material)
 {
-   if (std::find(kKnown.begin(), kKnown.end(), material.id) != kKnown.end())
+   if (std::find(kMaterials.begin(), kMaterials.end(), material.id) != kMaterials.end())
       return material.id;
    const bool soft = material.youngsModulus < kFlexure;
    switch (material.role) {

@@ -15,6 +15,7 @@
 
 #ifdef DIATOM_ASSIMP
 #include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -227,12 +228,28 @@ private:
    std::string m_fault;
 };
 
-Result<MeshRead> readWithAssimp(const std::filesystem::path &file, double unit)
+/// Only some of the library's readers tell how far they are.
+class ReadProgress : public Assimp::ProgressHandler
+{
+public:
+   explicit ReadProgress(ChildProgress progress) : m_progress(std::move(progress)) {}
+   bool Update(float fraction) override
+   {
+      m_progress(fraction);
+      return true; // goes on: who wants to stop ends the process
+   }
+
+private:
+   ChildProgress m_progress;
+};
+
+Result<MeshRead> readWithAssimp(const std::filesystem::path &file, double unit, const ChildProgress &progress)
 {
    const auto unreadable = [&](std::string_view why) {
       return Error{ErrorCode::unreadable, fmt::format("{}: {}", file.string(), why)};
    };
    Assimp::Importer importer;
+   importer.SetProgressHandler(new ReadProgress(progress)); // the importer deletes it
    const aiScene *scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType |
                                                                aiProcess_ValidateDataStructure);
    if (!scene || !scene->mRootNode) {
@@ -249,10 +266,10 @@ Result<MeshRead> readWithAssimp(const std::filesystem::path &file, double unit)
    return read;
 }
 
-Result<MeshRead> readGuarded(const std::filesystem::path &file, double unit)
+Result<MeshRead> readGuarded(const std::filesystem::path &file, double unit, const ChildProgress &progress)
 {
    try {
-      return readWithAssimp(file, unit);
+      return readWithAssimp(file, unit, progress);
    } catch (const std::bad_alloc &) {
       return Error{ErrorCode::unreadable,
                    fmt::format("{}: there is not enough memory to read it; make it coarser", file.string())};
@@ -285,8 +302,9 @@ Result<MeshRead> readMesh(const std::filesystem::path &file, double unit, const 
                                file.string(), kMostBytes)};
    // The library hangs or crashes on some broken files.
    const double seconds = kLeastSeconds + kSecondsPerByte * static_cast<double>(bytes);
-   job.progress(0, "reading the mesh");
-   auto packed = runInChild([&] { return packMesh(readGuarded(file, unit)); }, seconds, job);
+   auto packed =
+       runInChild([&](const ChildProgress &progress) { return packMesh(readGuarded(file, unit, progress)); },
+                  seconds, "reading the mesh", job);
    if (!packed)
       return Error{
           packed.error().code == ErrorCode::cancelled ? ErrorCode::cancelled : ErrorCode::unreadable,

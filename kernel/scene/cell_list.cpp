@@ -11,8 +11,6 @@ namespace diatom {
 
 namespace {
 
-constexpr std::int64_t kGrain = 1 << 14;
-
 /// Finds growing targets in a sorted array, each in the logarithm of the distance to the one before.
 class ForwardSearch
 {
@@ -151,11 +149,11 @@ Result<std::vector<JoinedPair>> joinedPairs(const Lattice &lattice, const CellLi
             steps[static_cast<std::size_t>(site)] = stepsOf(lattice, site);
          }
 
-   const std::int64_t pieces = (cells.count() + kGrain - 1) / kGrain;
+   const std::int64_t pieces = (cells.count() + kCellGrain - 1) / kCellGrain;
    std::vector<std::vector<JoinedPair>> found(static_cast<std::size_t>(pieces));
-   job.parallelFor(cells.count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+   job.parallelFor(cells.count(), kCellGrain, [&](std::int64_t begin, std::int64_t end) {
       if (!job.cancelled())
-         found[static_cast<std::size_t>(begin / kGrain)] = pairsFrom(lattice, cells, steps, begin, end);
+         found[static_cast<std::size_t>(begin / kCellGrain)] = pairsFrom(lattice, cells, steps, begin, end);
    });
    if (job.cancelled())
       return Error{ErrorCode::cancelled, "cancelled while finding which cells are joined"};

@@ -10,6 +10,8 @@
 
 namespace diatom {
 
+inline constexpr std::int64_t kCellGrain = 1 << 14; // cells in a piece of parallel work
+
 /// Sorted by (x, y, z), each index once.
 struct CellList
 {

@@ -1,5 +1,7 @@
 #include "scene/effect_looks.h"
 
+#include "scene/where.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@ namespace diatom {
 namespace {
 
 /// Cells looked at for evidence; a material that turns up later is named without a cell.
-constexpr std::int64_t kSearched = 20'000'000;
 
 /// Whether all cells have indices that differ in one coordinate only.
 bool inSingleFile(const Hierarchy &hierarchy)
@@ -46,7 +47,7 @@ std::vector<Index> cellsWhere(const Look &look, const std::function<bool(Cell)> 
    look.hierarchy.visit(look.hierarchy.bounds(), [&](Index i, Cell cell) {
       if (wanted(cell))
          cells.push_back(i);
-      return cells.size() < kEvidence && ++seen < kSearched;
+      return cells.size() < kEvidence && ++seen < kMostSearched;
    });
    std::sort(cells.begin(), cells.end());
    return cells;

@@ -15,8 +15,6 @@ namespace diatom {
 
 namespace {
 
-constexpr std::int64_t kGrain = 1 << 14;
-
 /// Columns of the property table in the order of propertiesOf(): what solvers ask for by name.
 constexpr std::array<const char *, 39> kProperties{
     "density",           "youngs_modulus",    "poisson_ratio",     "damping_ratio",     "axial_x",
@@ -156,7 +154,7 @@ void SceneBuilder::addCells(const CellList &cells)
       extents.push_back(high - low);
    }
    const bool turned = on("orientation");
-   m_job.parallelFor(cells.count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
+   m_job.parallelFor(cells.count(), kCellGrain, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
          const int site = m_lattice.site(cells.index[i]);
          const Cell cell = cells.cell[i];
@@ -180,7 +178,7 @@ Status SceneBuilder::addLinks(const CellList &cells)
    scene.m_linkA.resize(pairs->size());
    scene.m_linkB.resize(pairs->size());
    scene.m_linkAxis.resize(pairs->size());
-   m_job.parallelFor(static_cast<std::int64_t>(pairs->size()), kGrain,
+   m_job.parallelFor(static_cast<std::int64_t>(pairs->size()), kCellGrain,
                      [&](std::int64_t begin, std::int64_t end) {
                         for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k)
                         {

@@ -8,8 +8,6 @@ namespace diatom {
 
 namespace {
 
-constexpr std::int64_t kSearched = 20'000'000; // as many as can be simulated at once
-
 bool cornerInOrder(const Box &box) { return !box.empty() && inRange(box.min) && inRange(box.max); }
 
 } // namespace
@@ -67,7 +65,7 @@ std::vector<Index> someCells(const Hierarchy &hierarchy, const Where &where, std
    hierarchy.visit(box ? *box : hierarchy.bounds(), [&](Index i, Cell cell) {
       if (wanted == 0 || cell.material == wanted)
          cells.push_back(i);
-      return cells.size() < most && (box || ++seen < kSearched);
+      return cells.size() < most && (box || ++seen < kMostSearched);
    });
    std::sort(cells.begin(), cells.end());
    return cells;

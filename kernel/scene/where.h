@@ -10,6 +10,9 @@
 
 namespace diatom {
 
+/// Cells that are looked through at most for those wanted: as many as can be simulated at once.
+inline constexpr std::int64_t kMostSearched = 20'000'000;
+
 /// "(1, 2, 3)".
 std::string indexText(Index cell);
 /// "cell (1, 2, 3)", "box (0, 0, 0) to (4, 4, 4)", "material brass".

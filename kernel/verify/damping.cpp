@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kFirst{0, 0, 0}, kSecond{1, 0, 0};
+constexpr Index kSecond{1, 0, 0};
 
 /// Integrators with the step (parts of a radian of the oscillator) and the tolerance that the case gives.
 struct Way
@@ -50,7 +50,7 @@ Result<std::vector<double>> swing(const Case &one, const Bench &bench, const jso
 {
    CaseScene scene(one.content.at("lattice").at("pitch"));
    const MaterialIndex material = scene.materialOf(one.content.at("materials").at("m"));
-   scene.box(kFirst, kSecond, material);
+   scene.box(kOrigin, kSecond, material);
    if (damping > 0)
       scene.change(material,
                    [&](Material &own) { own.dampings = turns ? filled(0, damping) : filled(damping, 0); });
@@ -62,9 +62,9 @@ Result<std::vector<double>> swing(const Case &one, const Bench &bench, const jso
    };
    begin(kSecond, start);
    if (held)
-      scene.hold(kFirst);
+      scene.hold(kOrigin);
    else
-      begin(kFirst, -start);
+      begin(kOrigin, -start);
    scene.setup().step = kStep / omega;
    Values values = modelValues("b");
    values["integrator"] = integrator;
@@ -110,7 +110,7 @@ CaseScene Release::chain(double beta) const
    scene.boxes(m_released.at("cells"), material);
    if (beta > 0)
       scene.change(material, [&](Material &own) { own.dampings = proportional(*own.bonds, beta); });
-   scene.hold(kFirst);
+   scene.hold(kOrigin);
    return scene;
 }
 

@@ -14,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Index kFirst{0, 0, 0};
-
 struct Pair
 {
    const json *cells[2];
@@ -43,14 +41,14 @@ struct PairForces
 Result<PairForces> forcesOf(const Bench &bench, const Pair &pair, const Poses &poses, const char *model)
 {
    CaseScene scene(pair.pitch);
-   scene.cell(kFirst, scene.materialOf(*pair.cells[0]));
+   scene.cell(kOrigin, scene.materialOf(*pair.cells[0]));
    scene.cell(pair.second(), scene.materialOf(*pair.cells[1]));
-   scene.place(kFirst, poses.x1, poses.q1);
+   scene.place(kOrigin, poses.x1, poses.q1);
    scene.place(pair.second(), poses.x2 - pair.rest(), poses.q2);
    const auto answer = balanceOf(bench, scene, modelValues(model));
    if (!answer)
       return answer.error();
-   const Wrench first = answer->internal(kFirst), second = answer->internal(pair.second());
+   const Wrench first = answer->internal(kOrigin), second = answer->internal(pair.second());
    return PairForces{first.force, first.moment, second.force, second.moment, answer->elasticEnergy()};
 }
 

@@ -120,4 +120,20 @@ inline std::string admeshFault(const std::filesystem::path &file, double volume)
    return good ? "" : text;
 }
 
+/// The same by prusa-slicer, by hand only: DIATOM_LONG_TESTS=1. It starts slowly.
+inline std::string slicerFault(const std::filesystem::path &file, double volume)
+{
+   static const bool wanted = qEnvironmentVariableIsSet("DIATOM_LONG_TESTS");
+   if (!wanted)
+      return {};
+   const auto judge = run("prusa-slicer", {"--info", QString::fromStdString(file.string())});
+   const std::string text = judge.out.toStdString();
+   const auto at = text.find("volume = ");
+   double said = 0;
+   if (at != std::string::npos)
+      std::istringstream(text.substr(at + 9)) >> said;
+   const bool good = text.find("manifold = yes") != std::string::npos && std::abs(said / volume - 1) < 1e-3;
+   return good ? "" : "prusa-slicer: " + text + judge.err.toStdString();
+}
+
 } // namespace diatom::test

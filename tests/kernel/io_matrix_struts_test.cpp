@@ -60,6 +60,7 @@ void StrutMatrixTest::struts()
          QCOMPARE(QString::fromStdString(test::stlCheckFault(file(), test::volume(*geometry) * 1e9, true)),
                   QString());
       QCOMPARE(QString::fromStdString(test::admeshFault(file(), test::volume(*geometry) * 1e9)), QString());
+      QCOMPARE(QString::fromStdString(test::slicerFault(file(), test::volume(*geometry) * 1e9)), QString());
    }
 }
 

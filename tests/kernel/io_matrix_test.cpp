@@ -52,6 +52,7 @@ void MatrixTest::cells()
    if (!composite) // a slow checker
       QCOMPARE(QString::fromStdString(test::stlCheckFault(file(), wanted * 1e9, false)), QString());
    QCOMPARE(QString::fromStdString(test::admeshFault(file(), wanted * 1e9)), QString());
+   QCOMPARE(QString::fromStdString(test::slicerFault(file(), wanted * 1e9)), QString());
 }
 
 void MatrixTest::parts()
@@ -98,6 +99,8 @@ void MatrixTest::parts()
       DIATOM_VERIFY_OK(writeStl(hierarchy, maker->get(), stl, file(), Job()));
       if (!composite)
          QCOMPARE(QString::fromStdString(test::stlCheckFault(file(), wanted * 1e9, false)), QString());
+      QCOMPARE(QString::fromStdString(test::admeshFault(file(), wanted * 1e9)), QString());
+      QCOMPARE(QString::fromStdString(test::slicerFault(file(), wanted * 1e9)), QString());
    }
    if (makers == 0)
       QSKIP("no parts plugin fits this lattice");

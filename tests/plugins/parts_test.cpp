@@ -22,7 +22,7 @@ using Json = nlohmann::ordered_json;
 namespace {
 
 const std::string kCube = "org.diatom_cad.parts.cube", kGik = "org.diatom_cad.parts.gik",
-                  kSnap = "org.diatom_cad.parts.snap_voxel";
+                  kSnap = "org.diatom_cad.parts.snap_voxel", kGikPieces = "org.diatom_cad.parts.gik_pieces";
 
 struct RawMesh
 {
@@ -242,6 +242,7 @@ private slots:
    void newPartsHaveTheVolumesOfTheirMeasures();
    void gikBricksOfAnyLengthHaveTheVolumeOfTheirDrawing();
    void gikSlotsAreWhereTheCellsAre();
+   void gikPiecesOfARunMakeUpItsBrick();
    void coarseSnapVoxelHasTheVolumeOfTheSheet();
    void fineSnapVoxelStaysInItsCellButForThePeg();
    void fineSnapVoxelsPegGoesIntoTheSocketAbove();
@@ -440,6 +441,59 @@ void PartsPluginTest::gikSlotsAreWhereTheCellsAre()
    QVERIFY(walls == wanted);
 }
 
+namespace {
+
+/// Volume and bounds of the placed parts that cover a run, by its first cell's row: layer and the index
+/// across it.
+std::map<std::array<std::int32_t, 2>, test::MeshFacts> runsAsMade(const Instance &parts,
+                                                                  const std::vector<RawPart> &placed)
+{
+   std::map<std::array<std::int32_t, 2>, std::vector<test::Triangle<double>>> solids;
+   for (const RawPart &part : placed) {
+      const auto mesh = meshOf(parts, part.type, part.length, 1, 1e-3);
+      if (!mesh)
+         qFatal("%s", mesh.error().message.c_str());
+      const double w = part.orientation[0], z = part.orientation[3]; // turns about z only
+      const double c = w * w - z * z, s = 2 * w * z;
+      const auto &first = part.covered.front();
+      auto &solid = solids[{first[2], first[2] % 2 == 0 ? first[0] : first[1]}];
+      for (auto triangle : mesh->triangles()) {
+         for (auto &corner : triangle)
+            corner = {part.position[0] + c * corner[0] - s * corner[1],
+                      part.position[1] + s * corner[0] + c * corner[1], part.position[2] + corner[2]};
+         solid.push_back(triangle);
+      }
+   }
+   std::map<std::array<std::int32_t, 2>, test::MeshFacts> facts;
+   for (const auto &[row, solid] : solids)
+      facts[row] = test::meshFacts(solid);
+   return facts;
+}
+
+} // namespace
+
+void PartsPluginTest::gikPiecesOfARunMakeUpItsBrick()
+{
+   const auto bricks = create(kGik), pieces = create(kGikPieces);
+   DIATOM_VERIFY_OK(bricks);
+   DIATOM_VERIFY_OK(pieces);
+   const RawCells cells = someBricks();
+   const auto whole = decompose(**bricks, cells), cut = decompose(**pieces, cells);
+   DIATOM_VERIFY_OK(whole);
+   DIATOM_VERIFY_OK(cut);
+   QCOMPARE(cut->size(), cells.site.size());
+   const auto wanted = runsAsMade(**bricks, *whole), got = runsAsMade(**pieces, *cut);
+   QCOMPARE(got.size(), wanted.size());
+   for (const auto &[row, brick] : wanted) {
+      const auto &made = got.at(row);
+      QVERIFY(std::abs(made.volume / brick.volume - 1) < 1e-12); // rounding of some hundred terms
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+         QVERIFY(std::abs(made.least[axis] - brick.least[axis]) < 1e-15); // of lengths of some 1e-3
+         QVERIFY(std::abs(made.most[axis] - brick.most[axis]) < 1e-15);
+      }
+   }
+}
+
 void PartsPluginTest::coarseSnapVoxelHasTheVolumeOfTheSheet()
 {
    const auto parts = create(kSnap);
@@ -536,7 +590,7 @@ void PartsPluginTest::oneBrickIsMadeOfEachRun()
 void PartsPluginTest::theOrderOfTheCellsDoesNotMatter_data()
 {
    QTest::addColumn<QString>("id");
-   for (const std::string &id : {kCube, kGik, kSnap})
+   for (const std::string &id : {kCube, kGik, kGikPieces, kSnap})
       QTest::newRow(id.c_str()) << QString::fromStdString(id);
 }
 

@@ -4,8 +4,6 @@
 #include <diatom/part_runs.hpp>
 #include <diatom/part_shapes.hpp>
 
-#include <cmath>
-
 using namespace diatom::sdk;
 
 namespace {
@@ -17,67 +15,31 @@ constexpr double kHeight = 3.175;
 constexpr double kSlotDepth = 0.7744;
 constexpr int kLongest = 1'000'000; // a plate of 10^6 cells has 3 * 10^7 triangles
 
-/// Grid of the plate's outline: columns alternate solid, slot, solid, .. ; the middle one of three bands is
-/// solid.
-struct Outline
-{
-   std::vector<double> x;
-   std::array<double, 4> z{-kHeight / 2, -kHeight / 2 + kSlotDepth, kHeight / 2 - kSlotDepth, kHeight / 2};
-
-   explicit Outline(int length)
-   {
-      x.push_back(-kPitch / 2 + kInset);
-      for (int cell = 0; cell < length; ++cell) {
-         x.push_back(cell * kPitch - kThickness / 2);
-         x.push_back(cell * kPitch + kThickness / 2);
-      }
-      x.push_back((length - 1) * kPitch + kPitch / 2 - kInset);
-   }
-   int columns() const { return static_cast<int>(x.size()) - 1; }
-   bool solid(int column, int band) const
-   {
-      return column >= 0 && column < columns() && band >= 0 && band < 3 && (band == 1 || column % 2 == 0);
-   }
-};
-
 /// Frame: origin in the first cell's centre, run along +x, plate in the x-z plane.
 PartMesh plate(const MeshRequest &request)
 {
    if (request.length > kLongest)
       throw Failure(DIATOM_LIMIT,
                     "a brick of " + std::to_string(request.length) + " cells is too long to mesh");
-   const double scale = request.pitch / kPitch;
-   PartMesh mesh;
+   const double y = kThickness / 2, half = kThickness / 2;
+   std::vector<Prism> columns;
+   const auto column = [&](double left, double right, std::uint32_t solid) {
+      columns.push_back({{{left, -y}, {right, -y}, {right, y}, {left, y}}, solid});
+   };
+   const double left = -kPitch / 2 + kInset, right = (request.length - 0.5) * kPitch - kInset;
    if (request.detail == 0) {
-      const double left = -kPitch / 2 + kInset, right = (request.length - 0.5) * kPitch - kInset,
-                   y = kThickness / 2;
-      Prisms(mesh, scale)
-          .add({-kHeight / 2, kHeight / 2}, {{{{left, -y}, {right, -y}, {right, y}, {left, y}}, 1}});
-      return mesh;
-   }
-   const Outline outline(request.length);
-   for (const double x : outline.x)
-      for (const double z : outline.z)
-         for (const double y : {-kThickness / 2, kThickness / 2})
-            mesh.vertex(x * scale, y * scale, z * scale);
-   const auto corner = [](int column, int band, int back) { return (column * 4 + band) * 2 + back; };
-   for (int i = 0; i < outline.columns(); ++i)
-      for (int k = 0; k < 3; ++k) {
-         if (!outline.solid(i, k))
-            continue;
-         mesh.quad(corner(i, k, 0), corner(i + 1, k, 0), corner(i + 1, k + 1, 0), corner(i, k + 1, 0));
-         mesh.quad(corner(i, k, 1), corner(i, k + 1, 1), corner(i + 1, k + 1, 1), corner(i + 1, k, 1));
-         if (!outline.solid(i - 1, k))
-            mesh.quad(corner(i, k, 0), corner(i, k + 1, 0), corner(i, k + 1, 1), corner(i, k, 1));
-         if (!outline.solid(i + 1, k))
-            mesh.quad(corner(i + 1, k, 0), corner(i + 1, k, 1), corner(i + 1, k + 1, 1),
-                      corner(i + 1, k + 1, 0));
-         if (!outline.solid(i, k - 1))
-            mesh.quad(corner(i, k, 0), corner(i, k, 1), corner(i + 1, k, 1), corner(i + 1, k, 0));
-         if (!outline.solid(i, k + 1))
-            mesh.quad(corner(i, k + 1, 0), corner(i + 1, k + 1, 0), corner(i + 1, k + 1, 1),
-                      corner(i, k + 1, 1));
+      column(left, right, 1);
+   } else {
+      for (int cell = 0; cell < request.length; ++cell) {
+         column(cell == 0 ? left : (cell - 1) * kPitch + half, cell * kPitch - half, 7);
+         column(cell * kPitch - half, cell * kPitch + half, 2); // between the slots
       }
+      column((request.length - 1) * kPitch + half, right, 7);
+   }
+   PartMesh mesh;
+   const double top = kHeight / 2, slot = top - kSlotDepth;
+   const std::vector<double> whole{-top, top}, slotted{-top, -slot, slot, top};
+   Prisms(mesh, request.pitch / kPitch).add(request.detail == 0 ? whole : slotted, columns);
    return mesh;
 }
 
