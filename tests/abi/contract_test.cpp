@@ -179,8 +179,8 @@ void ContractTest::aBrokenContractIsCaughtByName_data()
        "DIATOM_OK 1\n#define DIATOM_CANCELLED 0", "DIATOM_OK has another value", "");
    row("a constant removed", "machine", "#define DIATOM_OP_PAUSE 7", "#define DIATOM_OP_WAIT 7",
        "DIATOM_OP_PAUSE", "");
-   row("another text of an id", "parts", "\"diatom.parts/1\"", "\"diatom.parts/2\"",
-       "DIATOM_PARTS_1 has another text", "");
+   row("another text of an id", "parts", "DIATOM_PARTS_1 \"diatom.parts/1\"",
+       "DIATOM_PARTS_1 \"diatom.parts/2\"", "DIATOM_PARTS_1 has another text", "");
    row("hidden padding", "solver", "int64_t iterations;", "int32_t more; int64_t iterations;",
        "diatom_step_result.iterations has moved", "'int32_t more'", "iterations");
    row("a header that needs another", "lattice", "#include \"core.h\"", "", "", "", "unknown type name");
