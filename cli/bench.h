@@ -70,6 +70,7 @@ struct Benchmark
 std::span<const Benchmark> cellBenchmarks();
 std::span<const Benchmark> exportBenchmarks();
 std::span<const Benchmark> mechanicsBenchmarks();
+std::span<const Benchmark> pluginBenchmarks();
 
 /// Of this process, now; 0 where nothing tells.
 std::uint64_t residentBytes();

@@ -46,6 +46,8 @@ public:
    /// Reports on stderr as `progress` says; cancelled by Ctrl+C (a second one kills).
    Job &job() { return *m_job; }
    std::shared_ptr<const Catalogue> catalogue();
+   /// Where catalogue() looks: --plugins, then the default folders.
+   std::vector<PluginFolder> searchFolders() const;
 
    /// A file opened with its lattice and hierarchy. On failure prints the error and sets `exit`.
    struct Input

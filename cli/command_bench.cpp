@@ -27,6 +27,7 @@ constexpr Group kGroups[] = {
     {"cells", cellBenchmarks},
     {"export", exportBenchmarks},
     {"mechanics", mechanicsBenchmarks},
+    {"plugins", pluginBenchmarks},
 };
 
 struct BenchOptions
