@@ -71,6 +71,7 @@ std::span<const Benchmark> cellBenchmarks();
 std::span<const Benchmark> exportBenchmarks();
 std::span<const Benchmark> importBenchmarks();
 std::span<const Benchmark> mechanicsBenchmarks();
+std::span<const Benchmark> pluginBenchmarks();
 
 /// Of this process, now; 0 where nothing tells.
 std::uint64_t residentBytes();

@@ -130,13 +130,17 @@ Context::Context()
 std::shared_ptr<const Catalogue> Context::catalogue()
 {
    m_job->setThreads(threads);
-   if (!m_catalogue) {
-      std::vector<std::filesystem::path> folders(pluginFolders.begin(), pluginFolders.end());
-      for (auto &folder : Catalogue::defaultFolders())
-         folders.push_back(std::move(folder));
-      m_catalogue = Catalogue::find(folders);
-   }
+   if (!m_catalogue)
+      m_catalogue = Catalogue::find(searchFolders());
    return m_catalogue;
+}
+
+std::vector<PluginFolder> Context::searchFolders() const
+{
+   std::vector<PluginFolder> folders(pluginFolders.begin(), pluginFolders.end());
+   for (auto &folder : defaultPluginFolders())
+      folders.push_back(std::move(folder));
+   return folders;
 }
 
 std::optional<Opened> Context::read(const std::string &file)

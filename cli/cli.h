@@ -47,6 +47,8 @@ public:
    /// Reports on stderr as `progress` says; cancelled by Ctrl+C (a second one kills).
    Job &job() { return *m_job; }
    std::shared_ptr<const Catalogue> catalogue();
+   /// Where catalogue() looks: --plugins, then the default folders.
+   std::vector<PluginFolder> searchFolders() const;
 
    /// A file with its notes told. On failure prints the error and sets `exit`.
    std::optional<Opened> read(const std::string &file);

@@ -28,6 +28,7 @@ constexpr Group kGroups[] = {
     {"export", exportBenchmarks},
     {"import", importBenchmarks},
     {"mechanics", mechanicsBenchmarks},
+    {"plugins", pluginBenchmarks},
 };
 
 struct BenchOptions

@@ -71,7 +71,7 @@ int main(int argc, char **argv)
                               ? parser.value(config)
                               : QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
    QSettings settings(folder + QStringLiteral("/studio.ini"), QSettings::IniFormat);
-   const auto catalogue = Catalogue::find(Catalogue::defaultFolders());
+   const auto catalogue = Catalogue::find(defaultPluginFolders());
    std::vector<std::unique_ptr<MainWindow>> windows;
    QStringList files = parser.positionalArguments();
    if (files.isEmpty())

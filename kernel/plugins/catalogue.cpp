@@ -1,15 +1,15 @@
 #include "plugins/catalogue.h"
 
 #include "core/text.h"
+#include "plugins/admission.h"
+#include "plugins/c_values.h"
 #include "plugins/module.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <sstream>
 
@@ -66,10 +66,11 @@ std::vector<fs::path> pluginFolders(const fs::path &folder)
    return found;
 }
 
-Candidate examine(const fs::path &folder)
+Candidate examine(const fs::path &folder, Origin origin)
 {
    Candidate candidate;
    candidate.folder = folder;
+   candidate.origin = isInstalled(folder) ? Origin::installed : origin;
    auto manifest = readManifest(folder);
    if (!manifest) {
       candidate.verdict = manifest.error().message;
@@ -116,28 +117,6 @@ void settleDuplicates(std::vector<Candidate> &candidates)
    }
 }
 
-/// The C form of completed values; the arrays point into `values`.
-struct CValues
-{
-   explicit CValues(const Values &values)
-   {
-      for (const auto &[parameter, value] : values) {
-         name.push_back(parameter.c_str());
-         const auto *number = std::get_if<double>(&value);
-         numbers.push_back(number ? *number : 0);
-         text.push_back(number ? "" : std::get<std::string>(value).c_str());
-      }
-      record = {sizeof(diatom_values), static_cast<std::int64_t>(name.size()), name.data(), numbers.data(),
-                text.data()};
-   }
-   CValues(const CValues &) = delete;
-   CValues &operator=(const CValues &) = delete;
-
-   std::vector<const char *> name, text;
-   std::vector<double> numbers;
-   diatom_values record{};
-};
-
 } // namespace
 
 struct Catalogue::Loader
@@ -152,83 +131,90 @@ struct Catalogue::Loader
    std::mutex mutex;
    std::map<std::string, Result<std::shared_ptr<const Module>>> modules; // by plugin id
 
-   Result<std::shared_ptr<const Module>> module(const Manifest &manifest)
+   Result<std::shared_ptr<const Module>> module(const Candidate &candidate, const Job &job)
    {
       const std::lock_guard lock(mutex);
+      const Manifest &manifest = candidate.manifest;
       const auto found = modules.find(manifest.id);
       if (found != modules.end())
          return found->second;
+      if (const Status admitted = admit(candidate, job); !admitted) {
+         if (admitted.error().code != ErrorCode::cancelled)
+            modules.emplace(manifest.id, admitted.error());
+         return admitted.error();
+      }
       return modules.emplace(manifest.id, Module::load(manifest)).first->second;
    }
 
-   Result<Opened> open(const Offer *offer, std::string_view interface, std::string_view id,
-                       const Values &given)
+   Result<Opened> open(const Offer &offer, const Values &given, const Job &job)
    {
-      if (!offer)
-         return Error{ErrorCode::unsupported,
-                      fmt::format("nothing installed provides {} as {}; `diatom plugins` lists what there is",
-                                  id, interface)};
-      auto values = completeValues(offer->provided->parameters, given);
+      const std::string &id = offer.provided->id;
+      auto values = completeValues(offer.provided->parameters, given);
       if (!values)
          return Error{values.error().code, fmt::format("{}: {}", id, values.error().message)};
-      auto loaded = module(*offer->manifest);
+      auto loaded = module(*offer.candidate, job);
       if (!loaded)
          return loaded.error();
-      Opened opened{*loaded, (*loaded)->table(offer->provided->interface.c_str()), *std::move(values)};
+      if (const Status able = checkExceptions(*offer.candidate, **loaded); !able)
+         return able.error();
+      Opened opened{*loaded, (*loaded)->table(offer.provided->interface.c_str()), *std::move(values)};
       if (!opened.table)
          return Error{ErrorCode::unsupported,
-                      fmt::format("{}: its plugin.json promises {}, its library has none", id, interface)};
+                      fmt::format("{}: its plugin.json promises {}, its library has none", id,
+                                  offer.provided->interface)};
       return opened;
+   }
+
+   /// A plugin from outside that let out so many exceptions is broken in this session; the user hears it once
+   /// more, not with every frame.
+   static Status checkExceptions(const Candidate &candidate, const Module &module)
+   {
+      constexpr int kMost = 3;
+      if (candidate.origin == Origin::installed || module.exceptions() < kMost)
+         return {};
+      return Error{
+          ErrorCode::unsupported,
+          fmt::format("{} failed inside {} times and is off until Diatom is started again; tell its author",
+                      candidate.manifest.id, kMost)};
    }
 };
 
 Catalogue::Catalogue() : m_loader(std::make_unique<Loader>()) {}
 Catalogue::~Catalogue() = default;
 
-std::shared_ptr<const Catalogue> Catalogue::find(const std::vector<fs::path> &folders)
+std::shared_ptr<const Catalogue> Catalogue::find(const std::vector<PluginFolder> &folders, bool tryUnknown)
 {
    std::shared_ptr<Catalogue> catalogue(new Catalogue);
    std::set<fs::path> seen; // one folder may be reached by several search paths
-   for (const fs::path &folder : folders)
-      for (const fs::path &plugin : pluginFolders(folder)) {
+   for (const PluginFolder &folder : folders)
+      for (const fs::path &plugin : pluginFolders(folder.path)) {
          std::error_code error;
          const fs::path real = fs::canonical(plugin, error);
          if (error || seen.insert(real).second)
-            catalogue->m_candidates.push_back(examine(plugin));
+            catalogue->m_candidates.push_back(examine(plugin, folder.origin));
       }
+   judgeOutsiders(catalogue->m_candidates, tryUnknown);
    settleDuplicates(catalogue->m_candidates);
    for (const Candidate &candidate : catalogue->m_candidates)
       if (candidate.accepted)
          for (const Provided &provided : candidate.manifest.provides)
             catalogue->m_offers.emplace_back(offerKey(provided.interface, provided.id),
-                                             Offer{&provided, &candidate.manifest});
+                                             Offer{&provided, &candidate.manifest, &candidate});
    std::stable_sort(catalogue->m_offers.begin(), catalogue->m_offers.end(),
                     [](const auto &a, const auto &b) { return a.first < b.first; });
    return catalogue;
 }
 
-std::vector<fs::path> Catalogue::defaultFolders()
+Error Catalogue::absent(std::string_view interface, std::string_view id) const
 {
-   std::vector<fs::path> folders;
-   if (const char *path = std::getenv("DIATOM_PLUGIN_PATH")) {
-      std::istringstream stream(path);
-      for (std::string folder; std::getline(stream, folder, ':');)
-         if (fs::path(folder).is_absolute())
-            folders.emplace_back(folder);
-   }
-   const char *data = std::getenv("XDG_DATA_HOME");
-   const char *home = std::getenv("HOME");
-   if (data && fs::path(data).is_absolute())
-      folders.push_back(fs::path(data) / "diatom/plugins/1");
-   else if (home && fs::path(home).is_absolute())
-      folders.push_back(fs::path(home) / ".local/share/diatom/plugins/1");
-   std::error_code error;
-   const fs::path executable = fs::read_symlink("/proc/self/exe", error);
-   if (!error) {
-      folders.push_back(executable.parent_path() / "../plugins");
-      folders.push_back(executable.parent_path() / "../lib/diatom/plugins/1");
-   }
-   return folders;
+   for (const Candidate &candidate : m_candidates)
+      for (const Provided &provided : candidate.manifest.provides)
+         if (!candidate.accepted && provided.interface == interface && provided.id == id)
+            return {ErrorCode::unsupported, fmt::format("{} cannot be used: the plugin in {}: {}", id,
+                                                        candidate.folder.string(), candidate.verdict)};
+   return {ErrorCode::unsupported,
+           fmt::format("nothing installed provides {} as {}; `diatom plugins` lists what there is", id,
+                       interface)};
 }
 
 std::vector<Offer> Catalogue::offers(std::string_view interface) const
@@ -266,7 +252,7 @@ Result<std::shared_ptr<const Instance>> Catalogue::createWith(std::string_view i
       return Error{ErrorCode::internal,
                    fmt::format("{} (create): it said it succeeded but made nothing", id)};
    const Offer &found = *offer(interface, id);
-   auto module = m_loader->module(*found.manifest); // loaded by the call above
+   auto module = m_loader->module(*found.candidate, job); // loaded by the call above
    if (!module)
       return module.error();
    const void *table = (*module)->table(found.provided->interface.c_str());
@@ -279,14 +265,21 @@ Status Catalogue::callWith(
     const std::function<std::int32_t(const void *, const diatom_call *, const diatom_create *)> &call) const
 {
    const Offer *found = offer(interface, id);
-   auto opened = m_loader->open(found, interface, id, values);
+   if (!found)
+      return absent(interface, id);
+   auto opened = m_loader->open(*found, values, job);
    if (!opened)
       return opened.error();
    const CValues record(opened->values);
    const std::string name(id), folder = found->manifest->folder.string();
    const diatom_create request{sizeof(diatom_create), name.c_str(), folder.c_str(), &record.record};
-   return guardedCall(name, function, job,
-                      [&](const diatom_call *hostCall) { return call(opened->table, hostCall, &request); });
+   std::int32_t status = DIATOM_EXCEPTION; // what stays when an exception comes out
+   Status done = guardedCall(name, function, job, [&](const diatom_call *hostCall) {
+      return status = call(opened->table, hostCall, &request);
+   });
+   if (status == DIATOM_EXCEPTION)
+      opened->module->noteException();
+   return done;
 }
 
 } // namespace diatom

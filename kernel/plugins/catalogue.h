@@ -5,6 +5,7 @@
 #include "core/result.h"
 #include "plugins/instance.h"
 #include "plugins/manifest.h"
+#include "plugins/origin.h"
 #include "plugins/values.h"
 
 #include <diatom/abi/lattice.h>
@@ -24,9 +25,12 @@ namespace diatom {
 struct Candidate
 {
    std::filesystem::path folder;
+   Origin origin = Origin::installed;
    Manifest manifest; // empty when unreadable
    bool accepted = false;
    std::string verdict; // "ok", or the reason in one sentence
+
+   std::filesystem::path library() const { return folder / manifest.library; }
 };
 
 /// One thing on offer.
@@ -34,18 +38,20 @@ struct Offer
 {
    const Provided *provided = nullptr;
    const Manifest *manifest = nullptr;
+   const Candidate *candidate = nullptr;
 };
 
-/// Immutable after find(); modules are loaded at first use, under a lock. Any thread.
+/// Immutable after find(); modules are loaded at first use, under a lock. Any thread. A library from outside
+/// the installation is tried in a process of its own before it is first loaded, and a plugin of the user's
+/// folder runs only when the user trusts its library (plugins/consent.h).
 class Catalogue
 {
 public:
    /// Looks in `folders` in order; within one, at <folder>/*/plugin.json and <folder>/*/*/plugin.json. Same
-   /// id twice: the higher version wins, then the earlier path; the loser is listed with the reason.
-   static std::shared_ptr<const Catalogue> find(const std::vector<std::filesystem::path> &folders);
-   /// The folders searched by default: DIATOM_PLUGIN_PATH (colon list), $XDG_DATA_HOME/diatom/plugins/1, then
-   /// beside the executable: <bin>/../plugins and <bin>/../lib/diatom/plugins/1. Never the current directory.
-   static std::vector<std::filesystem::path> defaultFolders();
+   /// id twice: the higher version wins, then the earlier path; the loser is listed with the reason. Loads
+   /// nothing; with `tryUnknown`, libraries that were never tried are, each in a process of its own.
+   static std::shared_ptr<const Catalogue> find(const std::vector<PluginFolder> &folders,
+                                                bool tryUnknown = false);
 
    const std::vector<Candidate> &candidates() const { return m_candidates; }
    /// Accepted things of one interface, ordered by id.
@@ -86,6 +92,8 @@ public:
 private:
    Catalogue();
    struct Loader;
+   /// Why nothing provides it: it is not installed, or what provides it was not accepted.
+   Error absent(std::string_view interface, std::string_view id) const;
    std::vector<Candidate> m_candidates;
    std::vector<std::pair<std::string, Offer>> m_offers; // "interface id", sorted
    std::unique_ptr<Loader> m_loader;

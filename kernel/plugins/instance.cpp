@@ -1,12 +1,16 @@
 #include "plugins/instance.h"
 
+#include "plugins/call_watch.h"
+#include "plugins/crash_note.h"
 #include "plugins/module.h"
 #include "plugins/process_state.h"
+#include "plugins/warnings.h"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <mutex>
+#include <string_view>
 #include <vector>
 
 namespace diatom {
@@ -22,6 +26,7 @@ struct FreeScratch
 struct HostCall
 {
    const Job *job = nullptr;
+   const char *who = nullptr, *function = nullptr;
    std::mutex mutex;
    std::string text; // of errors and warnings reported, in order
    std::vector<std::unique_ptr<void, FreeScratch>> scratch;
@@ -52,8 +57,11 @@ std::int32_t parallelFor(const diatom_call *call, std::int64_t count, std::int64
 {
    if (!body || count < 0)
       return DIATOM_BAD_INPUT;
-   host(call).job->parallelFor(count, grain,
-                               [=](std::int64_t begin, std::int64_t end) { body(context, begin, end); });
+   const HostCall &self = host(call);
+   self.job->parallelFor(count, grain, [=, &self](std::int64_t begin, std::int64_t end) {
+      const CallNote note(self.who, self.function); // the threads that help are not the one that called
+      body(context, begin, end);
+   });
    return DIATOM_OK;
 }
 
@@ -110,6 +118,20 @@ const char *nameOf(std::int32_t status)
    }
 }
 
+/// Steps and reads come thousands of times a second.
+ProcessState::Depth depthFor(std::string_view function)
+{
+   return function == "step" || function == "read" ? ProcessState::Depth::quick
+                                                   : ProcessState::Depth::thorough;
+}
+
+void warnOfChange(const std::string &who, const char *function, const std::string &changed)
+{
+   if (!changed.empty())
+      warnOfPlugin(fmt::format("{} ({}) changed {}, which a plugin must not do; it was put back", who,
+                               function, changed));
+}
+
 } // namespace
 
 Status guardedCall(const std::string &who, const char *function, const Job &job,
@@ -117,16 +139,20 @@ Status guardedCall(const std::string &who, const char *function, const Job &job,
 {
    HostCall state;
    state.job = &job;
+   state.who = who.c_str();
+   state.function = function;
    const diatom_call record{sizeof(diatom_call), &state,  report, cancelled, progress,
                             parallelFor,         scratch, service};
-   ProcessState process;
+   ProcessState process(depthFor(function));
    std::int32_t status = DIATOM_EXCEPTION;
    try {
+      const CallNote note(state.who, function);
+      const CallWatch watch(who, function, job);
       status = call(&record);
    } catch (...) {
       report(&record, DIATOM_ERROR, "it let an exception out, which the plugin contract forbids");
    }
-   process.restore();
+   warnOfChange(who, function, process.restore());
    if (status == DIATOM_OK)
       return {};
    return Error{codeOf(status),
@@ -141,14 +167,22 @@ Instance::Instance(std::shared_ptr<const Module> module, std::string id, const v
 Instance::~Instance()
 {
    ProcessState process;
-   m_destroy(m_self);
-   process.restore();
+   {
+      const CallNote note(m_id.c_str(), "destroy");
+      m_destroy(m_self);
+   }
+   warnOfChange(m_id, "destroy", process.restore());
 }
 
 Status Instance::call(const char *function, const Job &job,
                       const std::function<std::int32_t(const diatom_call *)> &call) const
 {
-   return guardedCall(m_id, function, job, call);
+   std::int32_t status = DIATOM_EXCEPTION; // what stays when an exception comes out
+   Status done =
+       guardedCall(m_id, function, job, [&](const diatom_call *host) { return status = call(host); });
+   if (status == DIATOM_EXCEPTION)
+      m_module->noteException();
+   return done;
 }
 
 } // namespace diatom

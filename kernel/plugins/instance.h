@@ -14,10 +14,10 @@ namespace diatom {
 
 class Module; // a loaded library; never unloaded
 
-/// The guard: builds the diatom_call, saves and restores the floating-point mode and the locale, notes who is
-/// being called for a crash report, turns a status and the reported text into a Result. Used for every call
-/// into a plugin, also before there is an instance. `who` names the plugin in messages; `function` the
-/// table's entry.
+/// The guard: builds the diatom_call, saves and restores the floating-point mode, the locale and the working
+/// directory, notes who is being called for a crash report, watches that cancel is answered, turns a status
+/// and the reported text into a Result. Used for every call into a plugin, also before there is an instance.
+/// `who` names the plugin in messages; `function` the table's entry.
 Status guardedCall(const std::string &who, const char *function, const Job &job,
                    const std::function<std::int32_t(const diatom_call *)> &call);
 

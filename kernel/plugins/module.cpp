@@ -1,6 +1,7 @@
 #include "plugins/module.h"
 
 #include "plugins/process_state.h"
+#include "plugins/warnings.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -35,7 +36,10 @@ Result<std::shared_ptr<const Module>> Module::load(const Manifest &manifest)
    const std::string file = (manifest.folder / manifest.library).string();
    ProcessState state;
    void *library = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-   state.restore();
+   if (const std::string changed = state.restore(); !changed.empty())
+      warnOfPlugin(
+          fmt::format("{} changed {} while it was loaded, which a plugin must not do; it was put back",
+                      manifest.id, changed));
    if (!library) {
       const char *why = ::dlerror();
       return Error{ErrorCode::unsupported,

@@ -6,6 +6,7 @@
 
 #include <diatom/abi/core.h>
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -20,9 +21,14 @@ public:
    /// The table of an interface, or null.
    const void *table(const char *interface) const { return m_record->get(interface); }
 
+   /// Counts exceptions that came out of its calls, and how many there were.
+   void noteException() const { m_exceptions.fetch_add(1, std::memory_order_relaxed); }
+   int exceptions() const { return m_exceptions.load(std::memory_order_relaxed); }
+
 private:
    explicit Module(const diatom_module *record) : m_record(record) {}
    const diatom_module *m_record;
+   mutable std::atomic<int> m_exceptions{0};
 };
 
 } // namespace diatom

@@ -2,6 +2,7 @@
 
 #include "core/clock.h"
 #include "scene/problems.h"
+#include "scene/solver_guard.h"
 
 #include <fmt/format.h>
 
@@ -177,16 +178,25 @@ Result<std::unique_ptr<SolverRun>> SolverRun::create(std::shared_ptr<const Catal
 
 Status SolverRun::listOutputs(const Job &job)
 {
-   return m_solver->call("outputs", job, [&](const diatom_call *call) -> std::int32_t {
-      const diatom_outputs *list = nullptr;
-      const std::int32_t status = m_solver->table<diatom_solver>()->outputs(m_solver->self(), call, &list);
-      if (status != DIATOM_OK || !list)
-         return status != DIATOM_OK ? status : DIATOM_INTERNAL;
-      m_outputs.clear();
-      for (std::int64_t k = 0; k < list->count; ++k)
-         m_outputs[list->output[k].name] = {k, list->output[k].count, list->output[k].stride};
-      return DIATOM_OK;
+   const diatom_outputs *list = nullptr;
+   const Status listed = m_solver->call("outputs", job, [&](const diatom_call *call) {
+      return m_solver->table<diatom_solver>()->outputs(m_solver->self(), call, &list);
    });
+   if (!listed)
+      return listed;
+   const std::string fault = list ? faultOfOutputs(*list, *m_scene) : "it lists no outputs";
+   if (!fault.empty())
+      return broken("outputs", fault);
+   m_outputs.clear();
+   for (std::int64_t k = 0; k < list->count; ++k)
+      m_outputs[list->output[k].name] = {k, list->output[k].count, list->output[k].stride};
+   return {};
+}
+
+Error SolverRun::broken(const char *function, const std::string &fault) const
+{
+   return {ErrorCode::internal,
+           fmt::format("{} ({}): {}; choose another solver and tell its author", solver(), function, fault)};
 }
 
 Status SolverRun::step(const diatom_step_request &request, diatom_step_result &result, const Job &job)
@@ -196,6 +206,9 @@ Status SolverRun::step(const diatom_step_request &request, diatom_step_result &r
       return m_solver->table<diatom_solver>()->step(m_solver->self(), call, &request, &result);
    });
    m_wall += secondsSince(before);
+   if (stepped.ok())
+      if (const std::string fault = faultOfStep(result); !fault.empty())
+         return broken("step", fault);
    m_time = result.time;
    return stepped;
 }
@@ -223,6 +236,9 @@ Result<std::vector<double>> SolverRun::read(const std::string &name, std::int64_
    });
    if (!done)
       return done.error();
+   if (const std::string fault = faultOfRows(values, name, first, output.stride, output.rows, *m_scene);
+       !fault.empty())
+      return broken("read", fault);
    return values;
 }
 

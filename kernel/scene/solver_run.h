@@ -66,6 +66,7 @@ public:
 private:
    SolverRun() = default;
    Status listOutputs(const Job &job);
+   Error broken(const char *function, const std::string &fault) const;
 
    struct Output
    {

@@ -1,6 +1,5 @@
 // Every plugin exports exactly one symbol, so that two plugins can never see each other's.
-#include "support/process.h"
-#include "support/support.h"
+#include "abi/contract.h"
 
 #include <QStandardPaths>
 
@@ -19,13 +18,8 @@ private slots:
       for (const auto &entry : fs::recursive_directory_iterator(test::binaryDir() / "plugins")) {
          if (entry.path().extension() != ".so")
             continue;
-         const test::Outcome nm = test::run(
-             "nm", {"-D", "--defined-only", "--format=posix", QString::fromStdString(entry.path().string())});
-         QCOMPARE(nm.exit, 0);
-         QStringList symbols;
-         for (const QString &line : QString::fromUtf8(nm.out).split('\n', Qt::SkipEmptyParts))
-            symbols << line.section(' ', 0, 0);
-         QCOMPARE(symbols, QStringList{"diatom_module_v1"});
+         const QString fault = test::abi::exportsFault(entry.path());
+         QVERIFY2(fault.isEmpty(), qPrintable(test::abi::text(entry.path()) + ": " + fault));
          ++plugins;
       }
       QVERIFY(plugins > 0);

@@ -142,10 +142,10 @@ void PluginsTest::oneFolderReachedTwiceIsOneCandidate()
 void PluginsTest::relativeSearchFoldersAreIgnored()
 {
    qputenv("DIATOM_PLUGIN_PATH", "plugins:/nowhere/else:.");
-   const auto folders = Catalogue::defaultFolders();
-   QCOMPARE(folders.front(), fs::path("/nowhere/else"));
-   for (const fs::path &folder : folders)
-      QVERIFY(folder.is_absolute());
+   const auto folders = defaultPluginFolders();
+   QCOMPARE(folders.front().path, fs::path("/nowhere/else"));
+   for (const PluginFolder &folder : folders)
+      QVERIFY(folder.path.is_absolute());
 }
 
 void PluginsTest::aHalfUpdatedInstallIsRefused()

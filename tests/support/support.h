@@ -39,7 +39,7 @@ inline std::filesystem::path samplesDir() { return sourceDir() / "resources" / "
 /// The plugins built with the tests.
 inline std::shared_ptr<const Catalogue> catalogue()
 {
-   static const auto found = Catalogue::find(Catalogue::defaultFolders());
+   static const auto found = Catalogue::find(defaultPluginFolders());
    return found;
 }
 

@@ -1,0 +1,167 @@
+#include "plugins/trial.h"
+
+#include "core/child.h"
+#include "plugins/c_values.h"
+#include "plugins/call_watch.h"
+#include "plugins/instance.h"
+#include "plugins/module.h"
+#include "plugins/warnings.h"
+
+#include <diatom/abi/lattice.h>
+#include <diatom/abi/machine.h>
+#include <diatom/abi/parts.h>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+namespace diatom {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kSeconds = 5; // loading takes milliseconds; a busy machine may take a hundred times that
+constexpr rlim_t kMemory = rlim_t{2} << 30;
+constexpr std::array kFatal{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kLimitMemory = false; // its shadow takes terabytes of address space
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool kLimitMemory = false;
+#else
+constexpr bool kLimitMemory = true;
+#endif
+#else
+constexpr bool kLimitMemory = true;
+#endif
+
+/// Faults end the child at once, what it prints is lost, and it cannot take the machine's memory.
+void isolate()
+{
+   for (const int signal : kFatal)
+      std::signal(signal, SIG_DFL);
+   const int nowhere = open("/dev/null", O_RDWR);
+   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+      dup2(nowhere, stream);
+   const rlimit noCore{0, 0};
+   setrlimit(RLIMIT_CORE, &noCore);
+   if (!kLimitMemory)
+      return;
+   rlim_t pages = 0; // in use already
+   std::ifstream("/proc/self/statm") >> pages;
+   const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + kMemory;
+   const rlimit memory{most, most};
+   setrlimit(RLIMIT_AS, &memory);
+}
+
+std::int64_t entries(const char *folder)
+{
+   std::error_code error;
+   std::int64_t count = 0;
+   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+      ++count;
+   return count;
+}
+
+/// What a plugin may leave behind in a process and must not.
+struct Traces
+{
+   std::int64_t threads = entries("/proc/self/task"), descriptors = entries("/proc/self/fd");
+   std::array<bool, kFatal.size()> handled{};
+
+   Traces()
+   {
+      for (std::size_t i = 0; i < kFatal.size(); ++i) {
+         struct sigaction action = {};
+         sigaction(kFatal[i], nullptr, &action);
+         handled[i] = action.sa_handler != SIG_DFL;
+      }
+   }
+   void compare(const Traces &before, std::string &text) const
+   {
+      const auto add = [&](bool is, const char *what) {
+         if (is)
+            text += std::string(text.empty() ? "" : " and ") + what;
+      };
+      add(threads > before.threads, "leaves threads running");
+      add(descriptors > before.descriptors, "leaves files open");
+      add(handled != before.handled, "catches the signals of crashes");
+   }
+};
+
+/// Makes one thing with its default values and ends it. A refusal is no fault.
+template<typename Table>
+void makeOne(const Module &module, const Provided &provided, const Manifest &manifest, const Job &job)
+{
+   const auto *table = static_cast<const Table *>(module.table(provided.interface.c_str()));
+   const auto values = completeValues(provided.parameters, {});
+   if (!table || !values)
+      return;
+   const CValues record(*values);
+   const std::string folder = manifest.folder.string();
+   const diatom_create request{sizeof(diatom_create), provided.id.c_str(), folder.c_str(), &record.record};
+   void *self = nullptr;
+   const Status made = guardedCall(provided.id, "create", job, [&](const diatom_call *call) {
+      return table->create(call, &request, &self);
+   });
+   if (made.ok() && self)
+      table->destroy(self);
+}
+
+/// In the child. What the plugin did that it must not.
+std::string trial(const Manifest &manifest)
+{
+   isolate();
+   stopWatchingCalls();
+   std::string text;
+   setPluginWarnings([&](const std::string &sentence) { text += (text.empty() ? "" : "; ") + sentence; });
+   Job job;
+   job.setThreads(1); // a pool of threads does not survive the making of a child
+   const Traces before;
+   const auto module = Module::load(manifest);
+   if (!module)
+      return {};
+   for (const Provided &provided : manifest.provides) {
+      if (provided.interface == DIATOM_LATTICE_1)
+         makeOne<diatom_lattice>(**module, provided, manifest, job);
+      else if (provided.interface == DIATOM_PARTS_1)
+         makeOne<diatom_parts>(**module, provided, manifest, job);
+      else if (provided.interface == DIATOM_MACHINE_1)
+         makeOne<diatom_machine>(**module, provided, manifest, job);
+   }
+   setPluginWarnings({});
+   std::string left;
+   Traces().compare(before, left);
+   if (!left.empty())
+      text += fmt::format("{}{} {}, which a plugin must not do", text.empty() ? "" : "; ", manifest.id, left);
+   return text;
+}
+
+} // namespace
+
+Result<Finding> tryLibrary(const Manifest &manifest, const Job &job)
+{
+   const pid_t parent = getpid();
+   const auto outcome =
+       runInChild([&] { return getpid() == parent ? std::string() : trial(manifest); }, kSeconds, job);
+   if (outcome)
+      return Finding{false, *outcome};
+   switch (outcome.error().code) {
+   case ErrorCode::cancelled:
+      return outcome.error();
+   case ErrorCode::timeLimit:
+      return Finding{true, fmt::format("it hung when it was tried ({:.0f} s)", kSeconds)};
+   default:
+      return Finding{true, fmt::format("it crashed when it was tried: {}", outcome.error().message)};
+   }
+}
+
+} // namespace diatom

@@ -1,0 +1,63 @@
+// A solver whose answers are not what it says they are.
+#pragma once
+
+#include <diatom/solver.hpp>
+
+#include <array>
+#include <limits>
+#include <string>
+
+namespace false_answers {
+
+class FalseSolver
+{
+public:
+   static const diatom_capabilities &capabilities()
+   {
+      static const char *const kPhysics[] = {"mechanics"}, *const kAnalyses[] = {"dynamics"},
+                               *const kEffects[] = {"rotation", "gravity", "loads"},
+                               *const kLattices[] = {"*"};
+      static const diatom_capabilities kCaps{sizeof kCaps, 1, 1,         kPhysics, kAnalyses, 3,
+                                             kEffects,     1, kLattices, 1};
+      return kCaps;
+   }
+   static void estimate(diatom::sdk::Call, diatom::sdk::Values, const diatom::sdk::SceneView &,
+                        diatom_estimate &estimate)
+   {
+      estimate.stable_step = 1e-3;
+      estimate.stable_link = -1;
+   }
+
+   FalseSolver(diatom::sdk::Call, diatom::sdk::Values values, const diatom::sdk::SceneView &scene)
+       : m_fault(values.text("fault")), m_cells(scene.cells())
+   {
+      const std::int64_t rows = m_fault == "counts" ? m_cells - 1 : m_fault == "limits" ? -5 : m_cells;
+      m_output = {{{"position", "m", rows, 3}, {"rotation", "", m_cells, 4}}};
+      m_outputs = {sizeof m_outputs, 2, m_output.data()};
+   }
+
+   void apply(diatom::sdk::Call, std::span<const diatom_channel>) {}
+   std::int32_t step(diatom::sdk::Call, const diatom_step_request &request, diatom_step_result &result)
+   {
+      if (m_fault == "throws")
+         throw std::runtime_error("the wheel came off");
+      result.state = m_fault == "state" ? 99 : DIATOM_DONE;
+      result.time = m_fault == "time" ? std::numeric_limits<double>::quiet_NaN() : request.until;
+      result.bad_cell = result.bad_link = -1;
+      return DIATOM_OK;
+   }
+   const diatom_outputs &outputs() const { return m_outputs; }
+   void read(diatom::sdk::Call, std::int64_t, std::int64_t, std::int64_t count, double *values) const
+   {
+      for (std::int64_t i = 0; i < count * 3; ++i)
+         values[i] = m_fault == "not finite" && i == 4 ? std::numeric_limits<double>::quiet_NaN() : 0;
+   }
+
+private:
+   std::string m_fault;
+   std::int64_t m_cells;
+   std::array<diatom_output, 2> m_output{};
+   diatom_outputs m_outputs{};
+};
+
+} // namespace false_answers
