@@ -38,6 +38,8 @@ nlohmann::ordered_json loadJson(const Load &load);
 Load readLoad(const JsonPlace &place);
 nlohmann::ordered_json startJson(const Start &start);
 Start readStart(const JsonPlace &place);
+nlohmann::ordered_json fieldJson(const Field &field);
+Field readField(const JsonPlace &place);
 nlohmann::ordered_json valuesJson(const Values &values);
 nlohmann::ordered_json fixedJson(std::uint8_t fixed);
 std::uint8_t readFixed(const JsonPlace &place);
