@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace diatom::cli {
 
@@ -94,17 +97,24 @@ nlohmann::ordered_json brief(const nlohmann::ordered_json &row)
            {"rotations", row["rotations"]}};
 }
 
-void run(Context &context)
+/// All of them, or those named by their id or its last word.
+void run(const std::vector<std::string> &wanted, Context &context)
 {
    const auto catalogue = context.catalogue();
+   std::vector<std::string> ids;
+   for (const std::string &given : wanted)
+      ids.push_back(fullId(*catalogue, DIATOM_LATTICE_1, given));
+   if (wanted.empty())
+      for (const Offer &offer : catalogue->offers(DIATOM_LATTICE_1))
+         ids.push_back(offer.provided->id);
    auto rows = nlohmann::ordered_json::array();
-   for (const Offer &offer : catalogue->offers(DIATOM_LATTICE_1)) {
+   for (const std::string &id : ids) {
       LatticeSpec spec;
-      spec.id = offer.provided->id;
+      spec.id = id;
       spec.pitch = 1; // so that lengths are lattice units
       const auto lattice = Lattice::make(*catalogue, spec, context.job());
       if (lattice)
-         rows.push_back(describe(**lattice, offer.provided->name));
+         rows.push_back(describe(**lattice, catalogue->offer(DIATOM_LATTICE_1, id)->provided->name));
       else
          context.fail(lattice.error());
    }
@@ -120,7 +130,9 @@ void addLattices(CLI::App &app, Context &context)
 {
    CLI::App *command =
        app.add_subcommand("lattices", "List the lattices: cell, packing, neighbours, rotations");
-   command->callback([&context] { run(context); });
+   const auto wanted = std::make_shared<std::vector<std::string>>();
+   command->add_option("ID", *wanted, "Only these, each by its id or its last word");
+   command->callback([&context, wanted] { run(*wanted, context); });
 }
 
 } // namespace diatom::cli

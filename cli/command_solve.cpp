@@ -1,4 +1,5 @@
-// diatom solve: the static balance of a design, what its supports supply, and how far it gave way.
+// diatom solve: the static balance of a design, what its supports supply, and how far it gave way; or the
+// steady state that a solver of another physics finds.
 #include "cli/commands.h"
 #include "cli/deformed_stl.h"
 #include "cli/number_checks.h"
@@ -10,8 +11,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace diatom::cli {
 
@@ -27,7 +30,7 @@ struct SolveOptions
    std::optional<double> at, tolerance;
    double every = 0, scale = 1;
    int loadSteps = 0;
-   std::string stl;
+   std::string stl, links;
 };
 
 Json vectorJson(const Vec3 &v) { return {v.x(), v.y(), v.z()}; }
@@ -105,6 +108,37 @@ Result<Json> reactionsReport(const SolverRun &run, const Setup &setup, const Job
    return report;
 }
 
+/// Of outputs that are the solver's own: the least and the greatest value with their cells, or the numbers of
+/// the whole.
+Result<Json> outputsReport(const SolverRun &run, const Job &job)
+{
+   auto report = Json::object();
+   for (const SolverRun::Told &told : run.told()) {
+      const auto values = run.output(told.name, job);
+      if (!values)
+         return values.error();
+      const std::string name = told.unit.empty() ? told.name : fmt::format("{} ({})", told.name, told.unit);
+      if (told.rows == 1 && values->size() <= 16) {
+         report[name] = *values;
+         continue;
+      }
+      if (values->empty())
+         continue;
+      const auto [least, greatest] = std::minmax_element(values->begin(), values->end());
+      Json row{{"least", *least}, {"greatest", *greatest}};
+      if (told.rows == run.scene().cells() && !told.name.starts_with("link_")) {
+         const auto cell = [&](auto place) {
+            return toJson(
+                run.scene().indices()[static_cast<std::size_t>((place - values->begin()) / told.stride)]);
+         };
+         row["least_at"] = cell(least);
+         row["greatest_at"] = cell(greatest);
+      }
+      report[name] = std::move(row);
+   }
+   return report;
+}
+
 Result<Json> report(const Balance &balance, const Setup &setup, const std::vector<Probe> &probes, bool json,
                     const Job &job)
 {
@@ -125,7 +159,16 @@ Result<Json> report(const Balance &balance, const Setup &setup, const std::vecto
          return reactions;
       object["reactions"] = *std::move(reactions);
    }
-   object["effects"] = effectsReport(run.scene().effects(), json);
+   if (!run.mechanics()) {
+      auto outputs = outputsReport(run, job);
+      if (!outputs)
+         return outputs;
+      object["outputs"] = *std::move(outputs);
+   }
+   std::vector<Effect> effects = run.scene().effects();
+   if (!run.mechanics())
+      std::erase_if(effects, [](const Effect &effect) { return effectIsMechanical(effect.name); });
+   object["effects"] = effectsReport(effects, json);
    auto values = probeValues(run, probes, job);
    if (!values)
       return values;
@@ -201,7 +244,11 @@ Result<Balance> balances(const SolveOptions &options, const Setup &setup, const 
 Status solveInput(const Context::Input &input, const SolveOptions &options, Context &context)
 {
    const Setup &setup = input.opened.design.setup;
-   if (Status held = checkHeld(input, context); !held)
+   const auto physics = solverPhysics(*context.catalogue(), setup.solver, context.job());
+   if (!physics)
+      return physics.error();
+   const bool mechanics = std::find(physics->begin(), physics->end(), kMechanics) != physics->end();
+   if (Status held = mechanics ? checkHeld(input, context) : Status(); !held)
       return held;
    const auto times = timesOf(options, options.at.value_or(endOfCurves(setup)));
    if (!times)
@@ -209,7 +256,7 @@ Status solveInput(const Context::Input &input, const SolveOptions &options, Cont
    auto scene = Scene::build(*input.hierarchy, setup, context.job(), Analysis::statics);
    if (!scene)
       return scene.error();
-   const auto probes = parseProbes(options.run.probes, **scene);
+   const auto probes = parseProbes(options.run.probes, **scene, !mechanics);
    if (!probes)
       return probes.error();
    for (const Problem &problem : (*scene)->networks().problems)
@@ -220,6 +267,9 @@ Status solveInput(const Context::Input &input, const SolveOptions &options, Cont
    const Model &model = input.opened.design.model;
    if (!options.run.state.empty())
       if (Status kept = writeState(*balance->run, model, options.run.state, context.job()); !kept)
+         return kept;
+   if (!options.links.empty())
+      if (Status kept = writeLinks(*balance->run, options.links, context.job()); !kept)
          return kept;
    if (!options.stl.empty())
       if (const auto kept =
@@ -252,7 +302,8 @@ void addSolve(CLI::App &app, Context &context)
 {
    const auto options = std::make_shared<SolveOptions>();
    CLI::App *command = app.add_subcommand(
-       "solve", "Find the static balance; prints residual, displacement, reactions and probes");
+       "solve", "Find the static balance, or the steady state of another physics; prints residual, "
+                "displacement, reactions, outputs and probes");
    addRunOptions(*command, options->run);
    command
        ->add_option("--at", options->at,
@@ -268,6 +319,8 @@ void addSolve(CLI::App &app, Context &context)
        ->add_option("--every", options->every,
                     "Also find the balances before, at this interval, s: for --record")
        ->check(kPositive);
+   command->add_option("--links", options->links,
+                       "Write what the solver tells of every link between two cells, as CSV");
    command->add_option("--stl", options->stl, "Write the deformed surface as STL, in mm");
    command->add_option("--scale", options->scale, "Exaggerate displacements in the STL by this factor");
    command->footer("Examples:\n  diatom solve beam.diatom --probe 0,13,0:z\n"

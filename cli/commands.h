@@ -6,6 +6,7 @@
 namespace diatom::cli {
 
 void addInfo(CLI::App &app, Context &context);
+void addPlugin(CLI::App &app, Context &context);
 void addPlugins(CLI::App &app, Context &context);
 void addLattices(CLI::App &app, Context &context);
 void addParts(CLI::App &app, Context &context);

@@ -9,9 +9,9 @@ using namespace diatom::cli;
 namespace {
 
 constexpr AddCommand kCommands[] = {
-    addInfo,     addCheck, addConvert,  addDo,      addExport,  addPlan,     addRender,
-    addSimulate, addSolve, addModes,    addEffects, addCircuit, addPipeline, addPlugins,
-    addLattices, addParts, addMachines, addSolvers, addBench,   addStudy,    addVerify,
+    addInfo,  addCheck,    addConvert, addDo,      addExport,   addPlan,   addRender,  addSimulate,
+    addSolve, addModes,    addEffects, addCircuit, addPipeline, addPlugin, addPlugins, addLattices,
+    addParts, addMachines, addSolvers, addBench,   addStudy,    addVerify,
 };
 
 } // namespace

@@ -22,11 +22,23 @@ std::string headed(const std::string &name, const std::string &unit)
 /// A column group of the state file: an output, its columns and their units.
 struct StateColumns
 {
-   const char *output;
-   std::vector<std::pair<const char *, const char *>> columns;
+   std::string output;
+   std::vector<std::pair<std::string, std::string>> columns;
 };
 
-/// Those that the run has.
+bool isOfLinks(const SolverRun::Told &told) { return told.name.starts_with("link_"); }
+
+/// An output with its name over each column, numbered where it has several.
+StateColumns columnsOf(const SolverRun::Told &told)
+{
+   StateColumns group{told.name, {}};
+   for (std::int64_t k = 0; k < told.stride; ++k)
+      group.columns.emplace_back(told.stride == 1 ? told.name : fmt::format("{}.{}", told.name, k),
+                                 told.unit);
+   return group;
+}
+
+/// Those that the run has, and outputs of the solver's own where it is about other things than mechanics.
 std::vector<StateColumns> stateColumns(const SolverRun &run)
 {
    std::vector<StateColumns> groups{
@@ -37,6 +49,12 @@ std::vector<StateColumns> stateColumns(const SolverRun &run)
        {"strain", {{"strain", ""}}},
        {"reaction", {{"fx", "N"}, {"fy", "N"}, {"fz", "N"}, {"mx", "N m"}, {"my", "N m"}, {"mz", "N m"}}}};
    std::erase_if(groups, [&](const StateColumns &group) { return !run.hasOutput(group.output); });
+   if (!run.mechanics())
+      for (const SolverRun::Told &told : run.told())
+         if (told.rows == run.scene().cells() && !isOfLinks(told) &&
+             std::none_of(groups.begin(), groups.end(),
+                          [&](const StateColumns &group) { return group.output == told.name; }))
+            groups.push_back(columnsOf(told));
    return groups;
 }
 
@@ -50,7 +68,7 @@ std::string csvRow(const std::vector<std::string> &fields)
 
 } // namespace
 
-Result<Probe> parseProbe(const std::string &text, const Scene &scene)
+Result<Probe> parseProbe(const std::string &text, const Scene &scene, bool ownOutputs)
 {
    const std::size_t colon = text.rfind(':');
    if (colon == std::string::npos)
@@ -62,6 +80,8 @@ Result<Probe> parseProbe(const std::string &text, const Scene &scene)
    Probe probe{text, scene.cellAt(*index), text.substr(colon + 1), ""};
    if (probe.cell < 0)
       return Error{ErrorCode::usage, fmt::format("--probe \"{}\": there is no cell at that index", text)};
+   if (ownOutputs)
+      return probe;
    std::string known;
    for (const auto &[channel, unit] : SolverRun::probeChannels()) {
       if (channel == probe.channel) {
@@ -153,6 +173,39 @@ Status writeState(const SolverRun &run, const Model &model, const std::filesyste
             object[groups[group].output] = std::vector<double>(begin, begin + width);
       }
       out.write(csv ? csvRow(fields) : object.dump() + "\n");
+   }
+   return out.commit();
+}
+
+Status writeLinks(const SolverRun &run, const std::filesystem::path &file, const Job &job)
+{
+   const diatom_scene &view = run.scene().view();
+   std::vector<std::string> names{"i", "j", "k", "to i", "to j", "to k"};
+   std::vector<std::pair<std::int64_t, std::vector<double>>> data; // numbers of each link, all of them
+   for (const SolverRun::Told &told : run.told()) {
+      if (told.rows != view.links || !isOfLinks(told))
+         continue;
+      auto values = run.output(told.name, job);
+      if (!values)
+         return values.error();
+      for (const auto &[name, unit] : columnsOf(told).columns)
+         names.push_back(headed(name, unit));
+      data.emplace_back(told.stride, *std::move(values));
+   }
+   if (data.empty())
+      return Error{ErrorCode::unsupported,
+                   fmt::format("{} tells nothing of links; leave --links out", run.solver())};
+   AtomicFile out(file);
+   out.write(csvRow(names));
+   for (std::int64_t link = 0; link < view.links; ++link) {
+      std::vector<std::string> fields;
+      for (const std::int32_t cell : {view.link_a[link], view.link_b[link]})
+         for (int axis = 0; axis < 3; ++axis)
+            fields.push_back(fmt::to_string(view.cell_index[3 * std::int64_t(cell) + axis]));
+      for (const auto &[width, values] : data)
+         std::transform(values.begin() + link * width, values.begin() + (link + 1) * width,
+                        std::back_inserter(fields), numberText);
+      out.write(csvRow(fields));
    }
    return out.commit();
 }

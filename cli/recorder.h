@@ -24,7 +24,8 @@ struct Probe
    std::string channel, unit;
 };
 
-Result<Probe> parseProbe(const std::string &text, const Scene &scene);
+/// `ownOutputs`: of a solver of another physics than mechanics, whose channels are known once it runs.
+Result<Probe> parseProbe(const std::string &text, const Scene &scene, bool ownOutputs = false);
 
 /// Writes CSV rows; the file appears only with finish().
 class Recorder
@@ -45,8 +46,12 @@ private:
 };
 
 /// Index, material, position, rotation, velocities, strain and reactions of every cell, as far as the solver
-/// tells them: CSV, or JSON lines for other suffixes.
+/// tells them, and what else it tells of every cell: CSV, or JSON lines for other suffixes.
 Status writeState(const SolverRun &run, const Model &model, const std::filesystem::path &file,
                   const Job &job);
+
+/// What the solver tells of every link, with the indices of its two cells, as CSV. Errors: it tells nothing
+/// of links.
+Status writeLinks(const SolverRun &run, const std::filesystem::path &file, const Job &job);
 
 } // namespace diatom::cli

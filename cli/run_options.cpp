@@ -28,6 +28,7 @@ void addModelOptions(CLI::App &command, RunOptions &options)
 {
    command.add_option("FILE", options.file, "A design of any readable format, - for standard input")
        ->required();
+   command.add_option("--solver", options.solver, "Solver: an id, or its last word (see diatom solvers)");
    command.add_option("--beam", options.beam, "Beam theory of a bond: timoshenko, thesis, euler");
    command.add_option("--gradient", options.gradient, "Torques: exact or simple");
    command.add_option("--effects", options.effects, "auto, or +NAME,-NAME to switch effects on and off");
@@ -57,6 +58,13 @@ std::unique_ptr<Context::Input> openToRun(const RunOptions &options, Context &co
    }
    for (const std::string &text : opened->notes)
       context.note(text);
+   Setup &setup = opened->design.setup;
+   if (const std::string id = fullId(*context.catalogue(), DIATOM_SOLVER_1, options.solver);
+       !id.empty() && id != setup.solver)
+   {
+      setup.solver = id;
+      setup.solverValues.clear(); // they were another solver's
+   }
    Status applied = apply(options, opened->design);
    if (applied && more)
       applied = more(opened->design);
@@ -67,11 +75,12 @@ std::unique_ptr<Context::Input> openToRun(const RunOptions &options, Context &co
    return context.prepare(*std::move(opened));
 }
 
-Result<std::vector<Probe>> parseProbes(const std::vector<std::string> &texts, const Scene &scene)
+Result<std::vector<Probe>> parseProbes(const std::vector<std::string> &texts, const Scene &scene,
+                                       bool ownOutputs)
 {
    std::vector<Probe> probes;
    for (const std::string &text : texts) {
-      auto probe = parseProbe(text, scene);
+      auto probe = parseProbe(text, scene, ownOutputs);
       if (!probe)
          return probe.error();
       probes.push_back(*std::move(probe));

@@ -14,11 +14,11 @@ namespace diatom::cli {
 
 struct RunOptions
 {
-   std::string file, beam, gradient, effects, record, state;
+   std::string file, solver, beam, gradient, effects, record, state;
    std::vector<std::string> probes, settings;
 };
 
-/// FILE, --beam, --gradient, --effects and --set.
+/// FILE, --solver, --beam, --gradient, --effects and --set.
 void addModelOptions(CLI::App &command, RunOptions &options);
 /// Those, and --probe, --record and --state.
 void addRunOptions(CLI::App &command, RunOptions &options);
@@ -27,8 +27,9 @@ void addRunOptions(CLI::App &command, RunOptions &options);
 std::unique_ptr<Context::Input> openToRun(const RunOptions &options, Context &context,
                                           const std::function<Status(Design &)> &more = {});
 
-/// Probes of a scene, in the order they were asked for.
-Result<std::vector<Probe>> parseProbes(const std::vector<std::string> &texts, const Scene &scene);
+/// Probes of a scene, in the order they were asked for; `ownOutputs`: as for parseProbe().
+Result<std::vector<Probe>> parseProbes(const std::vector<std::string> &texts, const Scene &scene,
+                                       bool ownOutputs = false);
 
 /// Values of the probes by their name.
 Result<nlohmann::ordered_json> probeValues(const SolverRun &run, const std::vector<Probe> &probes,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -58,6 +59,8 @@ struct Material
    /// For an actuator or source: its terminals.
    std::uint8_t ports = 0x3f;
    Actuation actuation; // when role is actuator
+   /// What solvers beyond mechanics ask for by name, as a heat conductivity. SI.
+   std::map<std::string, double> properties;
    friend bool operator==(const Material &, const Material &) = default;
 };
 

@@ -107,7 +107,7 @@ void Edit::pruneSetup()
 {
    auto &setup = m_design.setup;
    if (!ok() || (setup.supports.empty() && setup.drives.empty() && setup.loads.empty() &&
-                 setup.starts.empty() && setup.sources.empty()))
+                 setup.starts.empty() && setup.fields.empty() && setup.sources.empty()))
       return;
    const auto after = now();
    if (!after)
@@ -117,6 +117,7 @@ void Edit::pruneSetup()
    std::erase_if(setup.drives, gone);
    std::erase_if(setup.loads, gone);
    std::erase_if(setup.starts, gone);
+   std::erase_if(setup.fields, gone);
    std::erase_if(setup.sources, [&after](const Source &source) { return after->at(source.cell).empty(); });
 }
 

@@ -42,7 +42,7 @@ public:
    /// Argument "orientation", a rotation number of the cell's shape.
    std::uint8_t orientation(Index cell);
 
-   /// Removes supports, drives, loads, starts and sources whose cells are gone.
+   /// Removes supports, drives, loads, starts, fields and sources whose cells are gone.
    void pruneSetup();
 
    /// The result of apply(): the first fault, else puts the design in place and returns the undo text.

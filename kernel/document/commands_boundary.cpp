@@ -1,4 +1,4 @@
-// Commands on supports, drives, loads and starts. All take the same words for the cells they are on.
+// Commands on supports, drives, loads, starts and fields. All take the same words for the cells they are on.
 #include "document/command_edit.h"
 #include "scene/where.h"
 
@@ -203,6 +203,24 @@ Result<std::string> start(CommandContext &context, const nlohmann::json &argumen
    return edit.commit(countText("start", where.size()));
 }
 
+Result<std::string> field(CommandContext &context, const nlohmann::json &arguments)
+{
+   Edit edit(context, "field", arguments);
+   const auto where = places(edit);
+   const auto item = readValues(edit, readField);
+   putOn(edit.design().setup.fields, where, item, true,
+         [&](const Field &old) { return old.name == item.name; });
+   return edit.commit(countText("field", where.size()));
+}
+
+Result<std::string> unfield(CommandContext &context, const nlohmann::json &arguments)
+{
+   Edit edit(context, "unfield", arguments);
+   if (removeNamed(edit, edit.design().setup.fields) == 0)
+      edit.fail(ErrorCode::invalid, "no field is set on any of these cells");
+   return edit.commit("remove field");
+}
+
 #define DIATOM_PLACES                                                                                        \
    {"cell", "index", false, "which cell; or one of the next four"},                                          \
        {"cells", "cells", false, "several cells"}, {"box", "box", false, "every cell that is in a box now"}, \
@@ -236,6 +254,12 @@ constexpr CommandParameter kStart[] = {
     {"about_m", "list", false, "point that the cells turn and spin about as one body"},
 };
 
+constexpr CommandParameter kField[] = {
+    DIATOM_PLACES,
+    {"name", "text", true, "what it is, as the solver calls it"},
+    {"values", "list", true, "numbers of each of the cells"},
+};
+
 constexpr Command kBoundaryTable[] = {
     {"support", "Support cells", "Holds cells at rest, in all or some of their freedoms.", kSupport, support},
     {"unsupport", "Release cells", "Removes supports.", kPlaces, unsupport},
@@ -243,6 +267,9 @@ constexpr Command kBoundaryTable[] = {
     {"undrive", "Stop driving cells", "Removes drives.", kPlaces, undrive},
     {"load", "Load cells", "Puts a constant force and moment on each of the cells.", kLoad, load},
     {"start", "Start cells", "Sets where cells start and how fast.", kStart, start},
+    {"field", "Set a field", "Sets numbers that a solver of other physics takes by name, as a temperature.",
+     kField, field},
+    {"unfield", "Remove fields", "Removes what was set by field.", kPlaces, unfield},
 };
 
 } // namespace

@@ -66,6 +66,7 @@ Result<std::string> removeMaterial(CommandContext &context, const nlohmann::json
       std::erase_if(setup.drives, on);
       std::erase_if(setup.loads, on);
       std::erase_if(setup.starts, on);
+      std::erase_if(setup.fields, on);
    }
    return edit.commit(fmt::format("remove material {}", id));
 }
@@ -145,6 +146,7 @@ constexpr CommandParameter kSetMaterial[] = {
     {"inertia_kg_m2", "list", false, "of a cell about its own axes, instead of that of a full box"},
     {"ports", "list", false, "faces that conduct: \"-x\", \"+x\", ..."},
     {"actuation", "object", false, "mode, axis, strain_per_V, axis_from_wires"},
+    {"properties", "object", false, "numbers by name, for solvers of other physics than mechanics"},
 };
 constexpr CommandParameter kId[] = {{"id", "material", true, "id of the material"}};
 constexpr CommandParameter kReplace[] = {

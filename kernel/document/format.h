@@ -42,6 +42,8 @@ nlohmann::ordered_json referenceMeshJson(const ReferenceMesh &reference);
 ReferenceMesh readReferenceMesh(const JsonPlace &place);
 /// Refuses two of one name.
 std::vector<ReferenceMesh> readReferenceMeshes(const JsonPlace &list);
+nlohmann::ordered_json fieldJson(const Field &field);
+Field readField(const JsonPlace &place);
 nlohmann::ordered_json valuesJson(const Values &values);
 nlohmann::ordered_json fixedJson(std::uint8_t fixed);
 std::uint8_t readFixed(const JsonPlace &place);

@@ -1,5 +1,6 @@
-// Supports, drives, loads and starts between Setup and JSON, and the cells that each is on.
+// Supports, drives, loads, starts and fields between Setup and JSON, and the cells that each is on.
 #include "document/format.h"
+#include "scene/fields.h"
 #include "scene/holding.h"
 
 #include <fmt/format.h>
@@ -162,6 +163,31 @@ Start readStart(const JsonPlace &place)
    if (place.has("about_m"))
       start.about = place.at("about_m").numbers3();
    return start;
+}
+
+ordered_json fieldJson(const Field &field)
+{
+   ordered_json json = whereJson(field.where);
+   json["name"] = field.name;
+   json["values"] = field.values;
+   return json;
+}
+
+Field readField(const JsonPlace &place)
+{
+   Field field;
+   if (!place.object())
+      return field;
+   place.known({"cell", "box", "material", "name", "values"});
+   field.where = readWhere(place);
+   field.name = place.at("name").identifier();
+   const auto values = place.at("values");
+   for (std::size_t i = 0; i < values.size() && place.ok(); ++i)
+      field.values.push_back(values.at(i).number());
+   if (place.ok())
+      if (const std::string fault = fieldFault(field); !fault.empty())
+         place.fail(fault);
+   return field;
 }
 
 } // namespace diatom

@@ -1,5 +1,8 @@
 // Materials between Material and JSON.
 #include "document/format.h"
+#include "scene/scene.h"
+
+#include <fmt/format.h>
 
 namespace diatom {
 
@@ -83,6 +86,23 @@ Actuation readActuation(const JsonPlace &place)
    return actuation;
 }
 
+std::map<std::string, double> readProperties(const JsonPlace &place)
+{
+   std::map<std::string, double> properties;
+   if (!place.object())
+      return properties;
+   for (const auto &[name, value] : place.json().items()) {
+      const auto property = place.at(name);
+      if (!isIdentifier(name))
+         property.fail("must be named by letters, digits and _ . - only");
+      else if (isKnownProperty(name))
+         property.fail(
+             fmt::format("is a name that Diatom means something else by; choose another than {}", name));
+      properties[name] = property.number();
+   }
+   return properties;
+}
+
 std::uint8_t readPorts(const JsonPlace &place)
 {
    unsigned ports = 0;
@@ -121,6 +141,8 @@ ordered_json materialJson(const Material &material)
             ports.push_back(kPortNames[port]);
       json["ports"] = std::move(ports);
    }
+   if (!material.properties.empty())
+      json["properties"] = material.properties;
    if (material.actuation != Actuation{})
       json["actuation"] = actuationJson(material.actuation);
    return json;
@@ -133,7 +155,7 @@ Material readMaterial(const JsonPlace &place)
       return material;
    place.known({"id", "name", "color", "density_kg_m3", "youngs_modulus_Pa", "poisson_ratio", "damping_ratio",
                 "role", "bonds", "dampings", "inertia_kg_m2", "cell_model", "poisson_coupling", "ports",
-                "actuation"});
+                "actuation", "properties"});
    material.id = place.at("id").identifier();
    material.name = place.textOr("name", material.id);
    if (place.has("color"))
@@ -157,6 +179,8 @@ Material readMaterial(const JsonPlace &place)
           place.at("role").word({"insulator", "conductor", "source", "actuator"}));
    if (place.has("ports"))
       material.ports = readPorts(place.at("ports"));
+   if (place.has("properties"))
+      material.properties = readProperties(place.at("properties"));
    if (place.has("actuation"))
       material.actuation = readActuation(place.at("actuation"));
    return material;

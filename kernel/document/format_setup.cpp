@@ -142,6 +142,7 @@ ordered_json setupJson(const Setup &setup)
    putList(json, "drives", setup.drives, driveJson);
    putList(json, "loads", setup.loads, loadJson);
    putList(json, "starts", setup.starts, startJson);
+   putList(json, "fields", setup.fields, fieldJson);
    putList(json, "sources", setup.sources, sourceJson);
    if (setup.ground != Ground{})
       json["ground"] = groundJson(setup.ground);
@@ -174,14 +175,15 @@ Setup readSetup(const JsonPlace &place, const Model &model)
    Setup setup;
    if (!place.object())
       return setup;
-   place.known({"gravity_m_s2", "supports", "drives", "loads", "starts", "sources", "ground", "drag_1_s",
-                "step_s", "until_s", "solver", "references", "effects"});
+   place.known({"gravity_m_s2", "supports", "drives", "loads", "starts", "fields", "sources", "ground",
+                "drag_1_s", "step_s", "until_s", "solver", "references", "effects"});
    if (place.has("gravity_m_s2"))
       setup.gravity = place.at("gravity_m_s2").numbers3();
    setup.supports = readEntries(place, "supports", model, readSupport);
    setup.drives = readEntries(place, "drives", model, readDrive);
    setup.loads = readEntries(place, "loads", model, readLoad);
    setup.starts = readEntries(place, "starts", model, readStart);
+   setup.fields = readEntries(place, "fields", model, readField);
    if (place.has("sources"))
       setup.sources = readList<Source>(place.at("sources"), readSource);
    if (place.has("ground"))

@@ -73,6 +73,14 @@ Status settle(SolverRun &run, const diatom_step_request &request, const char *wh
          return stepped.error().code == ErrorCode::cancelled
                     ? Error{ErrorCode::cancelled, fmt::format("cancelled while seeking {}", what)}
                     : stepped.error();
+      if (result.state == DIATOM_DIVERGED && !run.mechanics())
+         return Error{
+             ErrorCode::unstable,
+             fmt::format(
+                 "{} was not found: after {} iterations {} is left of what drives it{}; look at what is "
+                 "set there, or ask for less with --tolerance",
+                 what, iterations, numberText(residual),
+                 result.bad_cell < 0 && result.bad_link < 0 ? "" : ", most " + run.placeOf(result))};
       if (result.state == DIATOM_DIVERGED)
          return Error{ErrorCode::unstable,
                       fmt::format("{} was not found: after {} iterations the unbalanced force is {} of the "
@@ -110,7 +118,8 @@ Status rebalance(Balance &balance, double time, double tolerance, const Job &job
 {
    const diatom_step_request asked{sizeof(diatom_step_request), time, 0,
                                    std::numeric_limits<std::int64_t>::max(), tolerance};
-   return settle(*balance.run, asked, "a static balance", balance.residual, balance.iterations, job);
+   return settle(*balance.run, asked, balance.run->mechanics() ? "a static balance" : "a steady state",
+                 balance.residual, balance.iterations, job);
 }
 
 Result<Reactions> reactionsOf(const SolverRun &run, const Setup &setup, const Job &job)

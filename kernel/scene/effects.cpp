@@ -3,6 +3,7 @@
 #include "scene/effect_looks.h"
 
 #include "core/text.h"
+#include "scene/fields.h"
 #include "scene/where.h"
 
 #include <fmt/format.h>
@@ -188,19 +189,27 @@ constexpr std::array<Row, 15> kEffects{{
     {"potential-field", false, Forcing::impossible, lookPotentialField},
 }};
 
-Effect plan(const Row &row, const Look &look)
+/// A field acts where it is set: the solver must know it, or the user leave it out.
+Verdict lookField(const Look &look, std::string_view name)
 {
-   Verdict verdict = row.look(look);
-   Effect effect{row.name,    verdict.on, false, std::move(verdict.why), std::move(verdict.evidence),
-                 std::nullopt};
-   const auto asked = look.setup.effects.find(row.name);
+   std::vector<const Field *> fields;
+   for (const Field &field : look.setup.fields)
+      if (field.name == name)
+         fields.push_back(&field);
+   return {true, countText(fields, "value is set", "values are set"), cellsOf(look, fields)};
+}
+
+Effect plan(const char *name, Forcing forcing, Verdict verdict, const Look &look)
+{
+   Effect effect{name, verdict.on, false, std::move(verdict.why), std::move(verdict.evidence), std::nullopt};
+   const auto asked = look.setup.effects.find(name);
    if (asked == look.setup.effects.end())
       return effect;
    effect.forced = true;
    if (!asked->second) {
       effect.why = verdict.on ? "switched off, although " + effect.why : "switched off; also, " + effect.why;
       effect.on = false;
-   } else if (!verdict.on && row.forcing == Forcing::harmless) {
+   } else if (!verdict.on && forcing == Forcing::harmless) {
       effect.why = "switched on, although " + effect.why;
       effect.on = true;
    } else if (!verdict.on) {
@@ -219,7 +228,9 @@ std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, 
    const Look look{hierarchy, setup, networks, analysis};
    std::vector<Effect> effects;
    for (const Row &row : kEffects)
-      effects.push_back(plan(row, look));
+      effects.push_back(plan(row.name, row.forcing, row.look(look), look));
+   for (const std::string &field : fieldNames(setup))
+      effects.push_back(plan(field.c_str(), Forcing::harmless, lookField(look, field), look));
    // Friction acts through the ground's pressure: without the one there is nothing of the other.
    const auto named = [&](std::string_view name) {
       return std::find_if(effects.begin(), effects.end(),
@@ -240,10 +251,16 @@ std::vector<std::string> effectNames()
    return names;
 }
 
+bool effectIsMechanical(std::string_view name)
+{
+   return std::any_of(kEffects.begin(), kEffects.end(), [&](const Row &row) { return name == row.name; });
+}
+
 bool effectIsForSolver(std::string_view name)
 {
-   return std::any_of(kEffects.begin(), kEffects.end(),
-                      [&](const Row &row) { return row.forSolver && name == row.name; });
+   return !effectIsMechanical(name) || std::any_of(kEffects.begin(), kEffects.end(), [&](const Row &row) {
+      return row.forSolver && name == row.name;
+   });
 }
 
 } // namespace diatom

@@ -24,13 +24,16 @@ struct Effect
    std::optional<double> costNs; // per cell-step, where measured
 };
 
-/// The effects table applied to a scene, in the table's order. An effect that this version cannot do is never
-/// on, even when asked for: `forced` then says that it was, and `why` that it cannot be had.
+/// The effects table applied to a scene, in the table's order, then the names of the set-up's fields. An
+/// effect that this version cannot do is never on, even when asked for: `forced` then says that it was, and
+/// `why` that it cannot be had.
 std::vector<Effect> planEffects(const Hierarchy &hierarchy, const Setup &setup, const Networks &networks,
                                 Analysis analysis = Analysis::dynamics);
 
 /// Names of the table's effects, in order.
 std::vector<std::string> effectNames();
+/// Whether it is one of mechanics: of the table, not a field.
+bool effectIsMechanical(std::string_view name);
 /// Whether a solver is told of the effect by name; the others are settled while the scene is built.
 bool effectIsForSolver(std::string_view name);
 

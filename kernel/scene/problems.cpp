@@ -1,6 +1,7 @@
 #include "scene/problems.h"
 
 #include "scene/cell_list.h"
+#include "scene/fields.h"
 #include "scene/holding.h"
 
 #include <fmt/format.h>
@@ -125,6 +126,7 @@ std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &
    findMissing(problems, "drive", hierarchy, setup.drives);
    findMissing(problems, "load", hierarchy, setup.loads);
    findMissing(problems, "start", hierarchy, setup.starts);
+   findMissing(problems, "field", hierarchy, setup.fields);
    std::vector<Index> missing;
    for (const Source &source : setup.sources)
       if (!inRange(source.cell) || hierarchy.at(source.cell).empty())
@@ -132,6 +134,7 @@ std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &
    addMissing(problems, "source", missing);
    findNotNumbers(problems, setup);
    findBadCurves(problems, setup);
+   findBadFields(problems, setup);
    if (problems.empty()) // what is driven twice can be told only of sound entries
       findConflicts(problems, hierarchy, setup);
    return problems;

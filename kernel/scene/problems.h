@@ -21,8 +21,8 @@ using Bodies = std::vector<std::vector<Index>>;
 /// Errors: more than `limit` cells, cancelled.
 Result<Bodies> findBodies(const Hierarchy &hierarchy, const Job &job, std::int64_t limit = 20'000'000);
 
-/// Errors "support-without-cell" (and drive-, load-, start-, source-), "not-a-number", "bad-curve",
-/// "driven-twice", and "held-and-driven".
+/// Errors "support-without-cell" (and drive-, load-, start-, field-, source-), "not-a-number",
+/// "bad-curve", "bad-field", "driven-twice", and "held-and-driven".
 std::vector<Problem> findSetupProblems(const Hierarchy &hierarchy, const Setup &setup);
 
 /// Warnings "floating-body": bodies that fall for ever, as there is gravity but neither ground nor a support

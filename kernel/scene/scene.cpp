@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include "scene/cell_list.h"
+#include "scene/fields.h"
 #include "scene/problems.h"
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace diatom {
 
@@ -125,7 +127,9 @@ Status SceneBuilder::check(std::int64_t cellLimit) const
                                cells, cellLimit)};
    for (const Problem &problem : findSetupProblems(m_hierarchy, m_setup))
       return Error{ErrorCode::invalid, problem.text};
-   const auto known = effectNames();
+   auto known = effectNames();
+   for (std::string &field : fieldNames(m_setup))
+      known.push_back(std::move(field));
    for (const auto &[name, wanted] : m_setup.effects)
       if (std::find(known.begin(), known.end(), name) == known.end())
          return Error{ErrorCode::usage, fmt::format("there is no effect called '{}'; there are {}", name,
@@ -197,14 +201,24 @@ void SceneBuilder::addMaterials()
 {
    Scene &scene = *m_scene;
    const auto asked = m_setup.effects.find("poisson");
+   std::set<std::string> more;
+   for (const Material &material : *m_hierarchy.model().materials)
+      for (const auto &[name, value] : material.properties)
+         more.insert(name);
    const bool all = asked != m_setup.effects.end() && asked->second; // forced on: whatever has a ratio
    for (const Material &material : *m_hierarchy.model().materials) {
       auto row = propertiesOf(material);
       row[20] = on("poisson") && bondsLeaveRatioOut(material) && (all || material.poissonCoupling) ? 1 : 0;
       scene.m_property.insert(scene.m_property.end(), row.begin(), row.end());
+      for (const std::string &name : more) {
+         const auto own = material.properties.find(name);
+         scene.m_property.push_back(
+             own == material.properties.end() ? std::numeric_limits<double>::quiet_NaN() : own->second);
+      }
       scene.m_materialIds.push_back(material.id);
    }
    scene.m_propertyNames.assign(kProperties.begin(), kProperties.end());
+   scene.m_propertyNames.insert(scene.m_propertyNames.end(), more.begin(), more.end());
 }
 
 /// The view of cells, links and materials, which the channels are made from.
@@ -226,7 +240,7 @@ void SceneBuilder::describe()
    view.link_b = scene.m_linkB.data();
    view.link_axis = scene.m_linkAxis.data();
    view.materials = static_cast<std::int32_t>(m_hierarchy.model().materials->size());
-   view.properties = static_cast<std::int32_t>(kProperties.size());
+   view.properties = static_cast<std::int32_t>(scene.m_propertyNames.size());
    view.property = scene.m_property.data();
    view.analysis = analysisName(scene.m_analysis);
 }
@@ -237,6 +251,9 @@ void SceneBuilder::addBoundary()
    const BoundaryWanted wanted{on("driven"), on("loads"), scene.m_analysis == Analysis::dynamics};
    for (ChannelRows &rows : boundaryChannels(scene, m_setup, wanted))
       scene.m_channelData.push_back(std::move(rows));
+   for (const std::string &name : fieldNames(m_setup))
+      if (on(name))
+         scene.m_channelData.push_back(fieldChannel(scene, m_setup, name));
 }
 
 void SceneBuilder::addGround()
@@ -345,6 +362,11 @@ Result<std::unique_ptr<Scene>> Scene::build(const Hierarchy &hierarchy, const Se
                                             Analysis analysis, std::int64_t cellLimit)
 {
    return SceneBuilder(hierarchy, setup, analysis, job).build(cellLimit);
+}
+
+bool isKnownProperty(std::string_view name)
+{
+   return std::find(kProperties.begin(), kProperties.end(), name) != kProperties.end();
 }
 
 std::int64_t Scene::cellAt(Index i) const

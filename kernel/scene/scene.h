@@ -15,9 +15,14 @@
 #include <deque>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace diatom {
+
+/// Whether every material has a property of this name from its other values, so that it cannot be one of its
+/// own.
+bool isKnownProperty(std::string_view name);
 
 /// Owns what a diatom_scene points to. Cells are numbered in order of (x, y, z) index; not copyable because
 /// of pointers.

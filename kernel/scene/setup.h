@@ -97,6 +97,16 @@ struct Start
    friend bool operator==(const Start &, const Start &) = default;
 };
 
+/// Numbers by a name that some solver knows, as a temperature: inputs that Diatom itself knows nothing of.
+/// SI.
+struct Field
+{
+   Where where;
+   std::string name;
+   std::vector<double> values; // for each of the cells
+   friend bool operator==(const Field &, const Field &) = default;
+};
+
 struct Ground
 {
    bool present = false;
@@ -123,6 +133,7 @@ struct Setup
    std::vector<Drive> drives;
    std::vector<Load> loads;
    std::vector<Start> starts;
+   std::vector<Field> fields;
    std::vector<Source> sources;
    Ground ground;
    double drag = 0;  // 1/s: slows all motion in proportion to mass; for settling

@@ -1,6 +1,7 @@
 #include "scene/solver_run.h"
 
 #include "core/clock.h"
+#include "core/text.h"
 #include "scene/problems.h"
 #include "scene/solver_guard.h"
 
@@ -20,7 +21,7 @@ constexpr const char *kInterface = DIATOM_SOLVER_1;
 /// What a solver says it can do, copied out of its memory.
 struct Capabilities
 {
-   std::vector<std::string> analyses, effects, lattices;
+   std::vector<std::string> physics, analyses, effects, lattices;
 };
 
 std::vector<std::string> copied(std::int64_t count, const char *const *names)
@@ -48,6 +49,7 @@ Result<Capabilities> readCapabilities(const Catalogue &catalogue, const std::str
              return status;
           if (!caps)
              return DIATOM_INTERNAL;
+          found.physics = copied(caps->physics, caps->physics_name);
           found.analyses = copied(caps->analyses, caps->analysis_name);
           found.effects = copied(caps->effects, caps->effect_name);
           found.lattices = copied(caps->lattices, caps->lattice);
@@ -77,7 +79,10 @@ Status checkCapabilities(const Capabilities &can, const Scene &scene, const Setu
    if (!contains(can.analyses, analysisName(scene.analysis())))
       return Error{ErrorCode::unsupported, fmt::format("{} cannot {}; choose another solver", setup.solver,
                                                        taskOf(scene.analysis()))};
+   const bool mechanics = contains(can.physics, kMechanics);
    for (const Effect &effect : scene.effects()) {
+      if (!mechanics && effectIsMechanical(effect.name))
+         continue; // weights and forces are nothing to a solver of heat
       const auto asked = setup.effects.find(effect.name);
       if (!effect.on && asked != setup.effects.end() && asked->second)
          return Error{ErrorCode::unsupported,
@@ -143,6 +148,15 @@ Result<diatom_estimate> estimateOf(const Catalogue &catalogue, const Scene &scen
 
 } // namespace
 
+Result<std::vector<std::string>> solverPhysics(const Catalogue &catalogue, const std::string &solver,
+                                               const Job &job)
+{
+   const auto can = readCapabilities(catalogue, solver, job);
+   if (!can)
+      return can.error();
+   return can->physics;
+}
+
 Result<std::unique_ptr<SolverRun>> SolverRun::create(std::shared_ptr<const Catalogue> catalogue,
                                                      std::unique_ptr<Scene> scene, const Setup &setup,
                                                      const Values &values, const Job &job)
@@ -171,6 +185,7 @@ Result<std::unique_ptr<SolverRun>> SolverRun::create(std::shared_ptr<const Catal
    run->m_scene = std::move(scene);
    run->m_solver = *solver;
    run->m_estimate = *estimate;
+   run->m_mechanics = contains(can->physics, kMechanics);
    if (const Status listed = run->listOutputs(job); !listed)
       return listed.error();
    return run;
@@ -189,7 +204,8 @@ Status SolverRun::listOutputs(const Job &job)
       return broken("outputs", fault);
    m_outputs.clear();
    for (std::int64_t k = 0; k < list->count; ++k)
-      m_outputs[list->output[k].name] = {k, list->output[k].count, list->output[k].stride};
+      m_outputs[list->output[k].name] = {k, list->output[k].count, list->output[k].stride,
+                                         list->output[k].unit ? list->output[k].unit : ""};
    return {};
 }
 
@@ -242,6 +258,14 @@ Result<std::vector<double>> SolverRun::read(const std::string &name, std::int64_
    return values;
 }
 
+std::vector<SolverRun::Told> SolverRun::told() const
+{
+   std::vector<Told> list;
+   for (const auto &[name, output] : m_outputs)
+      list.push_back({name, output.unit, output.rows, output.stride});
+   return list;
+}
+
 Result<std::vector<double>> SolverRun::output(const std::string &name, const Job &job) const
 {
    return read(name, 0, rows(name), job);
@@ -262,10 +286,25 @@ Result<double> SolverRun::probe(std::int64_t cell, const std::string &channel, c
 {
    const auto known = std::find_if(kProbeChannels.begin(), kProbeChannels.end(),
                                    [&](const ProbeChannel &one) { return channel == one.name; });
+   if (known == kProbeChannels.end() && cell >= 0 && cell < m_scene->cells()) {
+      const std::size_t dot = channel.rfind('.');
+      const auto component = dot == std::string::npos
+                                 ? std::optional<std::int64_t>(0)
+                                 : parseInteger(std::string_view(channel).substr(dot + 1));
+      const auto own = m_outputs.find(channel.substr(0, dot));
+      if (own != m_outputs.end() && own->second.rows == m_scene->cells() && component && *component >= 0 &&
+          *component < own->second.stride)
+      {
+         const auto row = read(own->first, cell, 1, job);
+         return row ? Result<double>((*row)[static_cast<std::size_t>(*component)]) : row.error();
+      }
+   }
    if (known == kProbeChannels.end()) {
       std::string names;
       for (const ProbeChannel &one : kProbeChannels)
-         names += std::string(" ") + one.name;
+         names += hasOutput(one.output) ? std::string(" ") + one.name : "";
+      for (const auto &[name, output] : m_outputs)
+         names += !m_mechanics && output.rows == m_scene->cells() ? " " + name : "";
       return Error{ErrorCode::usage,
                    fmt::format("there is no channel '{}' to probe; there are{}", channel, names)};
    }

@@ -24,6 +24,11 @@ struct Frame
    std::vector<double> position, rotation;
 };
 
+/// What a solver is about: "mechanics", "electronics", or another word of its author's.
+Result<std::vector<std::string>> solverPhysics(const Catalogue &catalogue, const std::string &solver,
+                                               const Job &job);
+constexpr const char *kMechanics = "mechanics";
+
 /// One thread at a time.
 class SolverRun
 {
@@ -51,11 +56,22 @@ public:
    /// `count` rows of an output from row `first`, stride numbers each.
    Result<std::vector<double>> read(const std::string &name, std::int64_t first, std::int64_t count,
                                     const Job &job) const;
+   /// What the solver tells: name, unit, rows, and numbers of each row. Those whose names begin with link_
+   /// have a row for each link of the scene.
+   struct Told
+   {
+      std::string name, unit;
+      std::int64_t rows = 0, stride = 0;
+   };
+   std::vector<Told> told() const;
+   /// Whether it is about motion and forces: what cannot be said of other physics then can.
+   bool mechanics() const { return m_mechanics; }
    /// All rows of an output.
    Result<std::vector<double>> output(const std::string &name, const Job &job) const;
    Result<Frame> frame(const Job &job) const;
    /// One channel of probeChannels() of one cell: displacements, turns and speeds, strain, and what the
-   /// cell's supports supply.
+   /// cell's supports supply; or an output of the solver's own with a row for each cell: its name, with .0,
+   /// .1 and so on where a row has several numbers.
    Result<double> probe(std::int64_t cell, const std::string &channel, const Job &job) const;
    /// "in the bond between cells (0, 0, 0) and (1, 0, 0)", "at cell ...", "somewhere".
    std::string placeOf(const diatom_step_result &result) const;
@@ -71,6 +87,7 @@ private:
    struct Output
    {
       std::int64_t number = 0, rows = 0, stride = 0;
+      std::string unit;
    };
    std::shared_ptr<const Catalogue> m_catalogue;
    std::unique_ptr<Scene> m_scene; // outlives the solver, which may point into it while it is made
@@ -78,6 +95,7 @@ private:
    std::map<std::string, Output> m_outputs;
    diatom_estimate m_estimate{};
    double m_time = 0, m_wall = 0;
+   bool m_mechanics = true;
 };
 
 } // namespace diatom

@@ -1,28 +1,80 @@
-# diatom_add_plugin(FOLDER): builds the plugin in FOLDER (plugin.json and sources) with the flags the ABI needs: hidden
-# symbols, one export, no FMA contraction, no undefined symbols, never unloaded, manifest embedded.
+# Plugins of Diatom: diatom_add_plugin() builds one, diatom_add_golden_test() holds what it does to what it did.
 
 set(DIATOM_PLUGIN_CMAKE_DIR ${CMAKE_CURRENT_LIST_DIR})
 
-function(diatom_add_plugin folder)
-  get_filename_component(name ${folder} NAME)
-  get_filename_component(kind ${folder} DIRECTORY)
-  get_filename_component(kind ${kind} NAME)
-  set(target plugin_${kind}_${name})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp ${folder}/*.c)
+# The folder that plugins of this manifest's kind lie in: diatom.lattice/1 -> lattices.
+function(diatom_plugin_kind json result)
+  string(JSON interface GET "${json}" provides 0 interface)
+  string(REGEX REPLACE "^diatom\\.([a-z]+)/.*$" "\\1s" kind "${interface}")
+  string(REPLACE "partss" "parts" kind "${kind}")
+  set(${result} ${kind} PARENT_SCOPE)
+endfunction()
 
-  # The module carries the very bytes of plugin.json, so that a half-updated install is noticed.
-  set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${target}_metadata.h)
-  file(READ ${folder}/plugin.json json HEX)
-  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${json}")
-  file(CONFIGURE OUTPUT ${embedded} CONTENT
-    "static const char diatom_plugin_metadata[] = {@bytes@'\\0'};\n" @ONLY)
+# Relaxed arithmetic changes results, and linking with it changes the host's arithmetic as well.
+function(diatom_refuse_fast_math target)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
+  get_property(options DIRECTORY PROPERTY COMPILE_OPTIONS)
+  foreach(name CMAKE_C_FLAGS CMAKE_C_FLAGS_${type} CMAKE_CXX_FLAGS CMAKE_CXX_FLAGS_${type} CMAKE_MODULE_LINKER_FLAGS options)
+    if("${${name}}" MATCHES "-(ffast-math|Ofast|funsafe-math-optimizations)")
+      message(FATAL_ERROR "${target} cannot be built with -${CMAKE_MATCH_1} (in ${name}): it would change the results of "
+        "Diatom itself, which must be the same everywhere. Take the flag out.")
+    endif()
+  endforeach()
+endfunction()
+
+# The module carries the very bytes of plugin.json, so that a half-updated install is noticed.
+function(diatom_embed_manifest target folder header)
+  file(READ ${folder}/plugin.json hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "'\\\\x\\1'," bytes "${hex}")
+  file(CONFIGURE OUTPUT ${header} CONTENT
+    "#ifdef __FAST_MATH__
+#error \"plugins of Diatom cannot be built with -ffast-math or -Ofast: take the flag out\"
+#endif
+static const char diatom_plugin_metadata[] = {@bytes@'\\0'};\n" @ONLY)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${folder}/plugin.json)
+endfunction()
+
+# diatom_add_plugin([FOLDER] [SOURCES FILE...] [DATA FILE...]): builds the plugin in FOLDER (plugin.json and sources) with
+# the flags the ABI needs: hidden symbols, one export, no FMA contraction, no undefined symbols, never unloaded, manifest
+# embedded. A folder within a larger tree is KIND/NAME and all of its sources are the plugin's. Without FOLDER the project
+# itself is the plugin: the manifest says the kind, the project's name is the plugin's, its target and its folder's. DATA is
+# copied beside the library.
+function(diatom_add_plugin)
+  cmake_parse_arguments(PARSE_ARGV 0 plugin "" "" "SOURCES;DATA")
+  if(plugin_UNPARSED_ARGUMENTS)
+    list(GET plugin_UNPARSED_ARGUMENTS 0 folder)
+    get_filename_component(name ${folder} NAME)
+    get_filename_component(kind ${folder} DIRECTORY)
+    get_filename_component(kind ${kind} NAME)
+    set(target plugin_${kind}_${name})
+    set(output ${DIATOM_PLUGIN_OUTPUT_DIRECTORY}/${kind}/${name})
+  else()
+    set(folder ${CMAKE_CURRENT_SOURCE_DIR})
+    set(name ${PROJECT_NAME})
+    set(target ${PROJECT_NAME})
+    file(READ ${folder}/plugin.json json)
+    diatom_plugin_kind("${json}" kind)
+    set(output ${CMAKE_CURRENT_BINARY_DIR}/${name}) # diatom --plugins build
+  endif()
+  set(sources ${plugin_SOURCES})
+  if(NOT sources)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cpp ${folder}/*.c)
+  endif()
+  diatom_refuse_fast_math(${name})
+  set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${target}_metadata.h)
+  diatom_embed_manifest(${target} ${folder} ${embedded})
 
   add_library(${target} MODULE ${sources})
   set_property(GLOBAL APPEND PROPERTY DIATOM_PLUGIN_TARGETS ${target})
   target_include_directories(${target} PRIVATE ${folder}) # a larger plugin has folders of its own
   target_link_libraries(${target} PRIVATE Diatom::Sdk)
-  target_compile_features(${target} PRIVATE cxx_std_20 c_std_11)
+  get_property(languages GLOBAL PROPERTY ENABLED_LANGUAGES)
+  if("CXX" IN_LIST languages)
+    target_compile_features(${target} PRIVATE cxx_std_20)
+  endif()
+  if("C" IN_LIST languages)
+    target_compile_features(${target} PRIVATE c_std_11)
+  endif()
   target_compile_definitions(${target} PRIVATE DIATOM_PLUGIN_METADATA="${embedded}")
   target_compile_options(${target} PRIVATE -ffp-contract=off)
   target_link_options(${target} PRIVATE -Wl,-z,nodelete
@@ -30,12 +82,23 @@ function(diatom_add_plugin folder)
   if(NOT DIATOM_SANITIZE)
     target_link_options(${target} PRIVATE -Wl,-z,defs)
   endif()
-  set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name}
+  set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name} POSITION_INDEPENDENT_CODE ON
     C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-    LIBRARY_OUTPUT_DIRECTORY ${DIATOM_PLUGIN_OUTPUT_DIRECTORY}/${kind}/${name})
-  add_custom_command(TARGET ${target} POST_BUILD
-    COMMAND ${CMAKE_COMMAND} -E copy_if_different ${folder}/plugin.json
-      ${DIATOM_PLUGIN_OUTPUT_DIRECTORY}/${kind}/${name}/plugin.json)
+    LIBRARY_OUTPUT_DIRECTORY ${output})
+  foreach(file plugin.json ${plugin_DATA})
+    get_filename_component(last ${file} NAME)
+    add_custom_command(TARGET ${target} POST_BUILD
+      COMMAND ${CMAKE_COMMAND} -E copy_if_different ${folder}/${file} ${output}/${last})
+  endforeach()
+  if(DIATOM_PLUGIN_INSTALL_DIRECTORY)
+    if(NOT DIATOM_PLUGIN_INSTALL_COMPONENT)
+      set(DIATOM_PLUGIN_INSTALL_COMPONENT plugin)
+    endif()
+    set(destination ${DIATOM_PLUGIN_INSTALL_DIRECTORY}/${kind}/${name})
+    install(TARGETS ${target} LIBRARY DESTINATION ${destination} COMPONENT ${DIATOM_PLUGIN_INSTALL_COMPONENT})
+    install(DIRECTORY ${output}/ DESTINATION ${destination} COMPONENT ${DIATOM_PLUGIN_INSTALL_COMPONENT}
+      PATTERN ${name}.so EXCLUDE)
+  endif()
   if(COMMAND diatom_warnings)
     diatom_warnings(${target})
     diatom_unity(${target})
@@ -43,5 +106,39 @@ function(diatom_add_plugin folder)
   # A plugin may need more than the SDK (Qt for scripts): its own optional plugin.cmake says so.
   if(EXISTS ${folder}/plugin.cmake)
     include(${folder}/plugin.cmake)
+  endif()
+endfunction()
+
+# diatom_add_golden_test(NAME EXPECTED FILE COMMAND WORD...): a ctest in which `diatom WORD...`, run in the project's folder
+# and with the project's plugin, must print what FILE holds. Without the program there is none, and configuring says so.
+function(diatom_add_golden_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 golden "" "EXPECTED" "COMMAND")
+  if(NOT DIATOM_PROGRAM)
+    message(STATUS "diatom was not found: the test ${name} is left out (-DDIATOM_PROGRAM=...)")
+    return()
+  endif()
+  set(command ${DIATOM_PROGRAM} --plugins ${CMAKE_CURRENT_BINARY_DIR} --progress none ${golden_COMMAND})
+  add_test(NAME ${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} COMMAND ${CMAKE_COMMAND}
+    "-DCOMMAND=${command}" -DACTUAL=${CMAKE_CURRENT_BINARY_DIR}/${name}.actual
+    -DEXPECTED=${CMAKE_CURRENT_SOURCE_DIR}/${golden_EXPECTED} -P ${DIATOM_PLUGIN_CMAKE_DIR}/DiatomGolden.cmake)
+endfunction()
+
+# diatom_add_plugin_test(NAME SOURCES FILE...): a program built with the plugin's flags, and a ctest that runs it. It includes
+# the plugin's sources or headers; after diatom_add_plugin().
+function(diatom_add_plugin_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 test "" "" "SOURCES")
+  add_executable(${name} ${test_SOURCES})
+  target_link_libraries(${name} PRIVATE Diatom::Sdk)
+  target_compile_features(${name} PRIVATE cxx_std_20)
+  target_compile_options(${name} PRIVATE -ffp-contract=off)
+  target_compile_definitions(${name} PRIVATE
+    DIATOM_PLUGIN_METADATA="${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME}_metadata.h")
+  add_test(NAME ${name} COMMAND ${name})
+endfunction()
+
+# A ctest that runs the conformance program on the project's plugin, where that program is installed.
+function(diatom_add_conformance_test)
+  if(DIATOM_PLUGIN_CHECK_PROGRAM)
+    add_test(NAME conformance COMMAND ${DIATOM_PLUGIN_CHECK_PROGRAM} ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME})
   endif()
 endfunction()

@@ -39,6 +39,10 @@ extern "C" {
  *   eigenvalue      modes x 1      rad2/s2, ascending; negative where the balance is unstable
  *   mode            (modes * cells) x 6   mode by mode: displacement, turn; of unit modal mass
  *
+ * Of other physics: each field of the design is a channel by its name, a row for each cell of each entry, and
+ * each property of a material a property by its name. A solver lists the fields it knows among its effects.
+ * An output whose name begins with link_ has a row per link.
+ *
  * Analyses: "dynamics" steps in time; "statics" finds the balance for curves and signals as they are at the
  * time `until`; "modes" finds that balance first, then vibrations about it. */
 
@@ -91,7 +95,7 @@ typedef struct diatom_capabilities
    int64_t size;
    int32_t physics;
    int32_t analyses;
-   const char *const *physics_name;  /* "mechanics", "electronics" */
+   const char *const *physics_name;  /* "mechanics", "electronics", "heat", ... */
    const char *const *analysis_name; /* "dynamics", "statics", "modes" */
    int64_t effects;
    const char *const *effect_name;
