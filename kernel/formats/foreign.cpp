@@ -1,8 +1,11 @@
 #include "formats/foreign.h"
 
+#include "core/file.h"
 #include "formats/earlier_programs.h"
 #include "formats/vox.h"
 #include "formats/voxcad.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
@@ -39,6 +42,16 @@ const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem:
       }
    }
    return found;
+}
+
+Status writeForeign(const Design &design, const Hierarchy &hierarchy, const ForeignFormat &format,
+                    const std::filesystem::path &file, std::vector<std::string> &notes, const Job &job)
+{
+   const auto bytes = format.write(design, hierarchy, notes, job);
+   const Status saved = bytes ? writeFileAtomic(file, *bytes) : Status(bytes.error());
+   if (!saved)
+      return Error{saved.error().code, fmt::format("{}: {}", file.string(), saved.error().message)};
+   return {};
 }
 
 } // namespace diatom

@@ -26,4 +26,8 @@ std::span<const ForeignFormat> foreignFormats();
 /// By name, else by the suffix of the file where that says it all; null when there is none.
 const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem::path &file);
 
+/// Written whole or not at all; `notes` tells what the format cannot hold. Errors name the file.
+Status writeForeign(const Design &design, const Hierarchy &hierarchy, const ForeignFormat &format,
+                    const std::filesystem::path &file, std::vector<std::string> &notes, const Job &job);
+
 } // namespace diatom
