@@ -270,7 +270,7 @@ void CommandsTest::renderDrawsPartsAndStruts()
       QCOMPARE(written.exit, 0);
       QCOMPARE(drawn.object()["triangles"], written.object()["files"].toArray()[0].toObject()["triangles"]);
    }
-   QCOMPARE(draw({"--as", "parts", "--parts", "truss_triangle"}).exit, 0);
+   QCOMPARE(draw({"--as", "parts", "--parts", "snap_voxel"}).exit, 0);
    QVERIFY(picture() == ofParts);
 
    const Outcome unknown = draw({"--as", "parts", "--parts", "gik"});
