@@ -39,6 +39,16 @@ public:
                  ? found
                  : nullptr;
    }
+   /// By its key; nobody gives the window back its focus where there is no window manager.
+   gui::ExportDialog *exportByKey()
+   {
+      window.activateWindow();
+      if (!QTest::qWaitForWindowActive(&window))
+         return nullptr;
+      view().setFocus();
+      key(Qt::Key_E, Qt::ControlModifier);
+      return dialog<gui::ExportDialog>();
+   }
    /// Picks an entry by keys, as far down as it is.
    void pick(const char *name, const QVariant &data)
    {
@@ -132,9 +142,7 @@ void ExchangeTest::exportsForOtherPrograms()
    QVERIFY(studio.openSample("gripper"));
    const auto cells = studio.cells();
    for (const char *name : {"g.vox", "g.vxc"}) {
-      studio.view().setFocus();
-      studio.key(Qt::Key_E, Qt::ControlModifier);
-      QVERIFY(studio.dialog<gui::ExportDialog>());
+      QVERIFY(studio.exportByKey());
       studio.type("export.file", file(name));
       QVERIFY(!studio.window.findChild<QComboBox *>("export.what")->isEnabled()); // it holds cells only
       studio.press("export.write");
@@ -145,9 +153,7 @@ void ExchangeTest::exportsForOtherPrograms()
       QCOMPARE(read->design.model.root.cells.count(), cells);
    }
    // The suffix .json says no program: the format is picked, and the name follows.
-   studio.view().setFocus();
-   studio.key(Qt::Key_E, Qt::ControlModifier);
-   QVERIFY(studio.dialog<gui::ExportDialog>());
+   QVERIFY(studio.exportByKey());
    studio.type("export.file", file("g.stl"));
    auto *format = studio.window.findChild<QComboBox *>("export.format");
    format->setFocus();
@@ -194,7 +200,7 @@ void ExchangeTest::theDialogSaysWhatIsWrong()
    studio.type("export.file", file("no/such/folder.obj"));
    studio.press("export.write");
    QVERIFY(studio.idle());
-   QVERIFY2(studio.message().contains("no/such/folder.obj"), qPrintable(studio.message()));
+   QVERIFY2(studio.message().contains("no/such/folder"), qPrintable(studio.message()));
 }
 
 /// A box of 30 x 20 x 10 without one triangle of its lid: cells inside by winding number, and it is said.
