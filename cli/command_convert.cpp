@@ -57,18 +57,18 @@ Result<Opened> fillMesh(Context &context, const ConvertOptions &options)
 }
 
 /// A file of another program, which needs the cells and not only the document.
-void saveForeign(Context &context, Opened opened, const ForeignFormat &format, const std::string &out)
+void convertForeign(Context &context, Opened opened, const ForeignFormat &format, const std::string &out)
 {
    const auto input = context.prepare(std::move(opened));
    if (!input)
       return;
    std::vector<std::string> notes;
-   const auto bytes = writeForeign(format, input->opened.design, *input->hierarchy, notes, context.job());
+   const Status saved =
+       writeForeign(input->opened.design, *input->hierarchy, format, out, notes, context.job());
    for (const std::string &text : notes)
       context.note(text);
-   const Status saved = bytes ? writeFileAtomic(out, *bytes) : Status(bytes.error());
    if (!saved)
-      context.fail({saved.error().code, fmt::format("{}: {}", out, saved.error().message)});
+      context.fail(saved.error());
 }
 
 /// To a .diatom document it opens without a lattice: one whose lattice is not installed converts all the
@@ -94,7 +94,7 @@ void convert(Context &context, const ConvertOptions &options)
    for (const auto &text : opened->notes)
       context.note(text);
    if (foreign) {
-      saveForeign(context, *std::move(opened), *foreign, options.out);
+      convertForeign(context, *std::move(opened), *foreign, options.out);
       return;
    }
    Status saved;

@@ -3,8 +3,7 @@
 #include "cli/lengths.h"
 #include "cli/number_checks.h"
 
-#include "io/geometry_file.h"
-#include "io/stl.h"
+#include "io/export_files.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -15,9 +14,6 @@
 namespace diatom::cli {
 
 namespace {
-
-/// Cells up to which contacts of an STL export are counted: a surface that takes a second and some 100 MB.
-constexpr std::uint64_t kMostCounted = 1'000'000;
 
 struct ExportArguments
 {
@@ -102,91 +98,43 @@ public:
       const auto material = materialOf(m_arguments, m_hierarchy.model());
       if (!material)
          return material.error();
+      const auto struts = strutOptions();
+      if (!struts)
+         return struts.error();
+      ExportOptions options;
+      options.format = m_format;
+      options.geometry.what = m_arguments.as == "parts"    ? GeometryOptions::What::parts
+                              : m_arguments.as == "struts" ? GeometryOptions::What::struts
+                                                           : GeometryOptions::What::cells;
       if (*material != 0)
-         m_material = *material;
+         options.geometry.material = *material;
+      options.geometry.apart = m_arguments.solids == "material";
+      options.geometry.detail = m_arguments.detail;
+      options.geometry.struts = *struts;
+      options.eachMaterial = m_arguments.eachMaterial;
+      options.ascii = m_arguments.ascii;
+      options.unit = unit();
+      std::shared_ptr<const PartMaker> maker;
       if (m_arguments.as == "parts") {
-         auto made = PartMaker::make(*m_context.catalogue(), m_arguments.parts, {},
+         auto made = PartMaker::make(*m_context.catalogue(),
+                                     fullId(*m_context.catalogue(), DIATOM_PARTS_1, m_arguments.parts), {},
                                      m_hierarchy.model().lattice.id, m_context.job());
          if (!made)
             return made.error();
-         m_maker = *std::move(made);
+         maker = *std::move(made);
       }
-      auto files = m_format == GeometryFormat::stl && m_arguments.as != "struts" ? streamed() : indexed();
-      if (!files)
-         return files.error();
-      return Json{{"as", m_arguments.as}, {"unit", m_unitName}, {"files", *std::move(files)}};
+      const auto written = exportFiles(m_hierarchy, maker.get(), options, m_arguments.out, m_context.job());
+      if (!written)
+         return written.error();
+      auto files = Json::array();
+      for (const ExportedFile &file : *written)
+         files.push_back(report(file));
+      return Json{{"as", m_arguments.as}, {"unit", m_unitName}, {"files", std::move(files)}};
    }
 
 private:
    bool isGltf() const { return m_format == GeometryFormat::gltf || m_format == GeometryFormat::glb; }
    double unit() const { return metresOf(m_unitName); }
-   std::string idOf(MaterialIndex material) const { return m_hierarchy.model().material(material).id; }
-
-   Result<Json> streamed()
-   {
-      StlOptions options;
-      options.what = m_arguments.as == "parts" ? StlOptions::What::parts : StlOptions::What::cells;
-      options.material = m_material;
-      options.ascii = m_arguments.ascii;
-      options.detail = m_arguments.detail;
-      options.unit = unit();
-      options.contacts = m_hierarchy.cells() <= kMostCounted;
-      std::vector<StlReport> reports;
-      if (m_arguments.eachMaterial) {
-         auto all = writeStlByMaterial(m_hierarchy, m_maker.get(), options, m_arguments.out, m_context.job());
-         if (!all)
-            return all.error();
-         reports = *std::move(all);
-      } else {
-         auto one = writeStl(m_hierarchy, m_maker.get(), options, m_arguments.out, m_context.job());
-         if (!one)
-            return one.error();
-         reports.push_back(*std::move(one));
-      }
-      auto files = Json::array();
-      for (const StlReport &report : reports) {
-         Json file{{"file", report.file.string()}};
-         if (report.material)
-            file["material"] = idOf(*report.material);
-         file["triangles"] = report.triangles;
-         file["bytes"] = report.bytes;
-         file["cells"] = report.cells;
-         if (m_arguments.as == "parts")
-            file["parts"] = report.parts;
-         if (report.edgeContacts)
-            file["edge_contacts"] = *report.edgeContacts;
-         if (report.vertexContacts)
-            file["vertex_contacts"] = *report.vertexContacts;
-         files.push_back(std::move(file));
-      }
-      return files;
-   }
-
-   Result<Json> indexed()
-   {
-      if (!m_arguments.eachMaterial) {
-         auto file = indexedFile(m_arguments.out, m_material);
-         if (!file)
-            return file.error();
-         return Json::array({*std::move(file)});
-      }
-      if (m_arguments.out == "-")
-         return Error{ErrorCode::usage, "a file per material cannot go to standard output; give a file name"};
-      auto files = Json::array();
-      const auto counts = m_hierarchy.countByMaterial();
-      const std::filesystem::path out(m_arguments.out);
-      for (std::size_t material = 1; material < counts.size(); ++material) {
-         if (counts[material] == 0)
-            continue;
-         const auto index = static_cast<MaterialIndex>(material);
-         const auto name = out.stem().string() + "." + idOf(index) + out.extension().string();
-         auto file = indexedFile(out.parent_path() / name, index);
-         if (!file)
-            return file.error();
-         files.push_back(*std::move(file));
-      }
-      return files;
-   }
 
    Result<StrutOptions> strutOptions() const
    {
@@ -206,43 +154,29 @@ private:
       return options;
    }
 
-   Result<Json> indexedFile(const std::filesystem::path &path, std::optional<MaterialIndex> material)
+   Json report(const ExportedFile &written) const
    {
-      GeometryOptions options;
-      options.what = m_arguments.as == "parts"    ? GeometryOptions::What::parts
-                     : m_arguments.as == "struts" ? GeometryOptions::What::struts
-                                                  : GeometryOptions::What::cells;
-      options.material = material;
-      options.detail = m_arguments.detail;
-      options.apart = m_arguments.solids == "material" && m_format != GeometryFormat::stl;
-      const auto struts = strutOptions();
-      if (!struts)
-         return struts.error();
-      options.struts = *struts;
-      const auto geometry = makeGeometry(m_hierarchy, m_maker.get(), options, m_context.job());
-      if (!geometry)
-         return geometry.error();
-      const auto bytes = writeGeometry(*geometry, m_format, unit(), path, m_context.job());
-      if (!bytes)
-         return bytes.error();
-      Json file{{"file", path.string()}};
-      if (material)
-         file["material"] = idOf(*material);
-      file["solids"] = geometry->solids.size() + geometry->beams.size();
-      file["triangles"] = geometry->triangles();
-      file["bytes"] = *bytes;
-      file["cells"] = geometry->cells;
+      Json file{{"file", written.file.string()}};
+      if (written.material)
+         file["material"] = m_hierarchy.model().material(*written.material).id;
+      if (written.solids > 0)
+         file["solids"] = written.solids;
+      file["triangles"] = written.triangles;
+      file["bytes"] = written.bytes;
+      file["cells"] = written.cells;
       if (m_arguments.as == "parts")
-         file["parts"] = geometry->parts;
+         file["parts"] = written.parts;
       if (m_arguments.as == "struts") {
-         file["struts"] = geometry->struts.struts;
-         file["nodes"] = geometry->struts.nodes;
-         file["strut_width"] = geometry->struts.width / unit();
-         if (geometry->struts.widest > 0)
-            file["widest"] = geometry->struts.widest / unit();
+         file["struts"] = written.struts.struts;
+         file["nodes"] = written.struts.nodes;
+         file["strut_width"] = written.struts.width / unit();
+         if (written.struts.widest > 0)
+            file["widest"] = written.struts.widest / unit();
       }
-      file["edge_contacts"] = geometry->edgeContacts();
-      file["vertex_contacts"] = geometry->vertexContacts();
+      if (written.edgeContacts)
+         file["edge_contacts"] = *written.edgeContacts;
+      if (written.vertexContacts)
+         file["vertex_contacts"] = *written.vertexContacts;
       return file;
    }
 
@@ -251,8 +185,6 @@ private:
    const Hierarchy &m_hierarchy;
    Context &m_context;
    std::string m_unitName;
-   std::optional<MaterialIndex> m_material;
-   std::shared_ptr<const PartMaker> m_maker;
 };
 
 /// By --format, else by the suffix; STL on standard output.

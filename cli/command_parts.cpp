@@ -2,6 +2,7 @@
 // parts in every way that its lattice has.
 #include "cli/commands.h"
 
+#include "parts/fitting_parts.h"
 #include "parts/part_list.h"
 
 #include <CLI/CLI.hpp>
@@ -119,9 +120,8 @@ void listParts(const std::string &file, const std::string &chosen, Context &cont
    std::vector<std::string> ids{chosen};
    if (chosen.empty()) {
       ids.clear();
-      for (const Offer &offer : context.catalogue()->offers(DIATOM_PARTS_1))
-         if (PartMaker::make(*context.catalogue(), offer.provided->id, {}, lattice, context.job()).ok())
-            ids.push_back(offer.provided->id);
+      for (const auto &maker : fittingParts(*context.catalogue(), lattice, context.job()))
+         ids.push_back(maker->id());
    }
    auto lists = nlohmann::ordered_json::array();
    Error problem{ErrorCode::unsupported, "no installed plugin makes parts for the lattice " + lattice +

@@ -3,6 +3,8 @@
 #include "cli/number_checks.h"
 #include "cli/picture.h"
 #include "core/text.h"
+#include "parts/decomposition.h"
+#include "render/surface.h"
 #include "scene/simulation.h"
 
 #include <CLI/CLI.hpp>
@@ -18,7 +20,8 @@ namespace {
 
 struct RenderOptions
 {
-   std::string file, out, size = "1280x800", view = "iso", colour = "material";
+   std::string file, out, size = "1280x800", view = "iso", colour = "material", as = "cells", parts;
+   int detail = -1;
    double atTime = 0;
    bool hierarchy = false, noGrid = false;
 };
@@ -57,6 +60,39 @@ Result<std::shared_ptr<const render::Moment>> simulate(const Context::Input &inp
    return momentOf(**simulation, *rest, context.job());
 }
 
+/// Why the options do not go together; empty when they do.
+std::string conflict(const RenderOptions &options)
+{
+   if (options.as != "cells" && (options.atTime > 0 || options.colour != "material" || options.hierarchy))
+      return "a simulation and --hierarchy show cells; leave --as, or --at-time, --colour and --hierarchy "
+             "out";
+   if (options.as != "parts" && (!options.parts.empty() || options.detail >= 0))
+      return "--parts and --detail are for --as parts; add that";
+   return {};
+}
+
+/// The parts or struts of the design, as an export makes them.
+Result<std::shared_ptr<const render::Surface>> surfaceOf(const Context::Input &input,
+                                                         const RenderOptions &options, Context &context)
+{
+   GeometryOptions what;
+   what.what = options.as == "parts" ? GeometryOptions::What::parts : GeometryOptions::What::struts;
+   what.detail = options.detail;
+   std::shared_ptr<const PartMaker> maker;
+   if (options.as == "parts") {
+      const Catalogue &catalogue = *context.catalogue();
+      auto made = PartMaker::make(catalogue, fullId(catalogue, DIATOM_PARTS_1, options.parts), {},
+                                  input.lattice->spec().id, context.job());
+      if (!made)
+         return made.error();
+      maker = *std::move(made);
+   }
+   auto surface = render::surfaceOf(*input.hierarchy, maker.get(), what, context.job());
+   if (!surface)
+      return surface.error();
+   return std::shared_ptr<const render::Surface>(std::make_shared<render::Surface>(*std::move(surface)));
+}
+
 Status draw(const Context::Input &input, const RenderOptions &options, std::pair<int, int> size,
             Context &context)
 {
@@ -73,21 +109,33 @@ Status draw(const Context::Input &input, const RenderOptions &options, std::pair
          return moment.error();
       request.moment = *std::move(moment);
    }
+   if (options.as != "cells") {
+      auto surface = surfaceOf(input, options, context);
+      if (!surface)
+         return surface.error();
+      request.surface = *std::move(surface);
+   }
    const auto drawn = drawPicture(input, request);
    if (!drawn)
       return drawn.error();
-   if (options.out != "-")
-      context.print({{"file", options.out},
-                     {"width", size.first},
-                     {"height", size.second},
-                     {"cells", input.hierarchy->cells()},
-                     {"faces", drawn->faces},
-                     {"composites_as_boxes", drawn->boxed}});
+   if (options.out == "-")
+      return {};
+   nlohmann::ordered_json report{{"file", options.out},
+                                 {"width", size.first},
+                                 {"height", size.second},
+                                 {"cells", input.hierarchy->cells()}};
+   if (request.surface)
+      report["triangles"] = request.surface->corners.size() / 3;
+   else
+      report.update({{"faces", drawn->faces}, {"composites_as_boxes", drawn->boxed}});
+   context.print(report);
    return {};
 }
 
 void run(const RenderOptions &options, Context &context)
 {
+   if (const std::string why = conflict(options); !why.empty())
+      return context.fail({ErrorCode::usage, why});
    const auto size = parseSize(options.size);
    if (!size) {
       context.fail(size.error());
@@ -117,6 +165,13 @@ void addRender(CLI::App &app, Context &context)
    command->add_option("--colour,--color", options->colour, "What colours mean; displacement draws a legend")
        ->check(CLI::IsMember({"material", "displacement"}))
        ->capture_default_str();
+   command->add_option("--as", options->as, "Cells, the parts that are really made, or their edges as struts")
+       ->check(CLI::IsMember({"cells", "parts", "struts"}))
+       ->capture_default_str();
+   command->add_option("--parts", options->parts,
+                       "Which parts, when several fit the lattice: see diatom parts");
+   command->add_option("--detail", options->detail, "Mesh detail of parts, 0 coarse; the finest by default")
+       ->check(kNonNegative);
    command->add_flag("--hierarchy", options->hierarchy, "Draw composites as boxes");
    command->add_flag("--no-grid", options->noGrid, "Leave the base plane out");
    command->callback([options, &context] { run(*options, context); });

@@ -10,6 +10,7 @@ Result<PictureReport> drawPicture(const Context::Input &input, const PictureRequ
 {
    render::SceneView view;
    view.setDesign(input.hierarchy, request.hierarchy, request.grid);
+   view.setSurface(request.surface);
    render::Overlay overlay;
    render::Camera camera;
    camera.resize(request.width, request.height);

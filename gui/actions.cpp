@@ -15,10 +15,12 @@ constexpr auto kTool = ActionInfo::tool;
 constexpr auto kPlain = ActionInfo::plain;
 
 constexpr ActionInfo kTable[] = {
-    {"file.open", "file", TR("&Open..."), "Ctrl+O", TR("Open a design, or a file of an earlier program")},
+    {"file.open", "file", TR("&Open..."), "Ctrl+O",
+     TR("Open a design or a file of another program, or fill a mesh with cells")},
     {"file.save", "-file", TR("&Save"), "Ctrl+S", TR("Save the design")},
     {"file.saveAs", "file", TR("Save &As..."), "Ctrl+Shift+S", TR("Save the design under another name")},
-    {"file.exportStl", "file", TR("&Export STL..."), "Ctrl+E", TR("Write the cells' surface as an STL file")},
+    {"file.export", "file", TR("&Export..."), "Ctrl+E",
+     TR("Write cells, parts or struts as STL, 3MF, OBJ, PLY or glTF, or a file of another program")},
     {"file.quit", "-file", TR("&Quit"), "Ctrl+Q", TR("Close the program")},
 
     {"edit.undo", "edit", TR("&Undo"), "Ctrl+Z", TR("Take the last edit back")},
@@ -48,6 +50,8 @@ constexpr ActionInfo kTable[] = {
     {"view.orthographic", "view", TR("Ort&hographic"), "Num+5", TR("Draw without perspective"), kToggle},
     {"view.cells", "-view", TR("&Cells"), "V", TR("Show every cell")},
     {"view.hierarchy", "view", TR("&Hierarchy"), "H", TR("Show composites as boxes")},
+    {"view.parts", "view", TR("&Parts"), "P", TR("Show the parts that the cells are made of")},
+    {"view.struts", "view", TR("&Struts"), "Shift+P", TR("Show the edges of the cells as struts")},
     {"view.grid", "view", TR("Base &Plane"), "Ctrl+G", TR("Show the lattice's tiling on the base plane"),
      kToggle},
 

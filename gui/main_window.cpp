@@ -73,7 +73,7 @@ void MainWindow::connectActions()
    on("file.open", [this] { chooseAndOpen(); });
    on("file.save", [this] { save(false); });
    on("file.saveAs", [this] { save(true); });
-   on("file.exportStl", [this] { exportStl(); });
+   on("file.export", [this] { chooseExport(); });
    on("file.quit", [this] { close(); });
    on("edit.undo", [this] { m_session.undo(); });
    on("edit.redo", [this] { m_session.redo(); });
@@ -96,6 +96,8 @@ void MainWindow::connectActions()
    on("view.grid", [this] { m_viewport->setGrid(m_actions["view.grid"]->isChecked()); });
    on("view.cells", [this] { m_viewport->setHierarchyView(false); });
    on("view.hierarchy", [this] { m_viewport->setHierarchyView(true); });
+   on("view.parts", [this] { showAs(GeometryOptions::What::parts); });
+   on("view.struts", [this] { showAs(GeometryOptions::What::struts); });
    on("simulate.play", [this] { togglePlay(); });
    on("simulate.reset", [this] { m_player.reset(); });
    on("simulate.colour", [this] { showFrame(); });

@@ -11,6 +11,7 @@
 #include "gui/simulation_player.h"
 #include "gui/task_row.h"
 #include "gui/viewport.h"
+#include "io/geometry.h"
 
 #include <QMainWindow>
 #include <QSettings>
@@ -22,6 +23,9 @@ class QDockWidget;
 class QLabel;
 
 namespace diatom::gui {
+
+struct ExportRequest;
+struct ImportRequest;
 
 class MainWindow : public QMainWindow
 {
@@ -36,7 +40,7 @@ public:
    Viewport &viewport() { return *m_viewport; }
    SimulationPlayer &player() { return m_player; }
    bool busy() const { return m_task->busy(); }
-   /// In the background; the window shows it when it is read.
+   /// In the background; the window shows it when it is read. For a mesh it first asks of which cells.
    void open(const std::filesystem::path &file);
 
    /// Folders with samples: beside an installed program and in the source tree.
@@ -60,7 +64,15 @@ private:
    bool mayDiscard();
    void chooseAndOpen();
    bool save(bool elsewhere);
-   void exportStl();
+   void chooseExport();
+   void exportTo(const ExportRequest &request);
+   void openMesh(const std::filesystem::path &file);
+   void fillMesh(const std::filesystem::path &file, const ImportRequest &request);
+   /// False, with a message, while other work is going on.
+   bool startTask(const QString &name, std::function<void(const Job &)> work, std::function<void()> done);
+   void showFailure(const Error &error);
+   /// Parts or struts, in the background.
+   void showAs(GeometryOptions::What what);
    void togglePlay();
    void showFrame();
    void editStarted();

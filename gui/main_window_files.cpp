@@ -1,7 +1,7 @@
 // The window's dealings with files, and its help.
 #include "gui/main_window.h"
 
-#include "io/stl.h"
+#include "io/mesh_read.h"
 
 #include <QCoreApplication>
 #include <QDialog>
@@ -55,28 +55,31 @@ bool MainWindow::mayDiscard()
 
 void MainWindow::open(const std::filesystem::path &file)
 {
+   if (isMeshFile(file)) {
+      openMesh(file);
+      return;
+   }
    auto result = std::make_shared<std::optional<Result<Opened>>>();
-   const QString name = QString::fromStdString(file.filename().string());
-   const bool started = m_task->start(
-       tr("Opening %1").arg(name), [result, file](const Job &job) { result->emplace(openDesign(file, job)); },
+   startTask(
+       tr("Opening %1").arg(QString::fromStdString(file.filename().string())),
+       [result, file](const Job &job) { result->emplace(openDesign(file, job)); },
        [this, result, file] {
           if (result->value().ok())
              m_session.take(std::move(**result).value(), file);
-          else if (result->value().error().code != ErrorCode::cancelled)
-             m_messages->showMessage(QString::fromStdString(result->value().error().message), true);
+          else
+             showFailure(result->value().error());
        });
-   if (!started)
-      m_messages->showMessage(tr("Something is still being read or written; wait for it or cancel it."),
-                              true);
 }
 
 void MainWindow::chooseAndOpen()
 {
    if (!mayDiscard())
       return;
-   const QString file =
-       QFileDialog::getOpenFileName(this, tr("Open"), lastFolder("design"),
-                                    tr("Designs (*.diatom *.json *.vox *.vxc *.vxa);;All files (*)"));
+   const QString file = QFileDialog::getOpenFileName(
+       this, tr("Open"), lastFolder("design"),
+       tr("Designs and meshes (*.diatom *.json *.vox *.vxc *.vxa *.stl *.obj "
+          "*.ply *.3mf *.gltf *.glb);;Designs (*.diatom *.json *.vox *.vxc "
+          "*.vxa);;Meshes (*.stl *.obj *.ply *.3mf *.gltf *.glb);;All files (*)"));
    if (file.isEmpty())
       return;
    rememberFolder("design", file);
@@ -97,38 +100,6 @@ bool MainWindow::save(bool elsewhere)
       file = chosen.toStdString();
    }
    return m_session.save(file);
-}
-
-void MainWindow::exportStl()
-{
-   if (!m_session.hierarchy())
-      return;
-   QString chosen =
-       QFileDialog::getSaveFileName(this, tr("Export STL"), lastFolder("export"), tr("STL (*.stl)"));
-   if (chosen.isEmpty())
-      return;
-   if (QFileInfo(chosen).suffix().isEmpty())
-      chosen += QStringLiteral(".stl");
-   rememberFolder("export", chosen);
-   auto result = std::make_shared<std::optional<Result<StlReport>>>();
-   const bool started = m_task->start(
-       tr("Writing %1").arg(QFileInfo(chosen).fileName()),
-       [result, hierarchy = m_session.hierarchy(), file = chosen.toStdString()](const Job &job) {
-          result->emplace(writeStl(*hierarchy, nullptr, {}, file, job));
-       },
-       [this, result] {
-          const auto &written = result->value();
-          if (written.ok())
-             m_messages->showMessage(tr("Wrote %1 with %2 triangles.")
-                                         .arg(QString::fromStdString(written->file.string()))
-                                         .arg(written->triangles),
-                                     false);
-          else if (written.error().code != ErrorCode::cancelled)
-             m_messages->showMessage(QString::fromStdString(written.error().message), true);
-       });
-   if (!started)
-      m_messages->showMessage(tr("Something is still being read or written; wait for it or cancel it."),
-                              true);
 }
 
 void MainWindow::showKeys()

@@ -57,6 +57,19 @@ QString durationText(double seconds)
    return figureText(seconds / unit->seconds) + QLatin1Char(' ') + QLatin1String(unit->name);
 }
 
+QString lengthText(double metres)
+{
+   if (!std::isfinite(metres))
+      return unknown();
+   if (metres >= 1)
+      return figureText(metres) + QStringLiteral(" m");
+   if (metres >= 1e-4 || metres <= 0)
+      return figureText(1e3 * metres) + QStringLiteral(" mm");
+   if (metres >= 1e-7)
+      return figureText(1e6 * metres) + QStringLiteral(" um");
+   return figureText(1e9 * metres) + QStringLiteral(" nm");
+}
+
 QString percentText(double relative)
 {
    if (!std::isfinite(relative) || relative < 0)

@@ -1,4 +1,4 @@
-// Times and errors as people read and write them; SI inside. What is not a number is "unknown".
+// Lengths, times and errors as people read and write them; SI inside. What is not a number is "unknown".
 #pragma once
 
 #include <QString>
@@ -11,6 +11,8 @@ namespace diatom::gui {
 QString durationText(double seconds);
 /// "1.1 %"; "under 0.0001 %" for less than that.
 QString percentText(double relative);
+/// "2 mm", "35.6 um", "1.2 m".
+QString lengthText(double metres);
 /// Three digits that count: "4.1", "0.25", "12000".
 QString figureText(double value);
 

@@ -2,6 +2,8 @@
 
 #include "gui/default_design.h"
 
+#include <QStringList>
+
 namespace diatom::gui {
 
 Session::Session(std::shared_ptr<const Catalogue> catalogue, QObject *parent)
@@ -39,8 +41,11 @@ void Session::take(Opened opened, const std::filesystem::path &file)
 {
    m_file = opened.format == "diatom" ? file : std::filesystem::path();
    replace(std::move(opened.design));
+   QStringList notes;
    for (const std::string &note : opened.notes)
-      emit noted(QString::fromStdString(note));
+      notes.append(QString::fromStdString(note));
+   if (!notes.isEmpty())
+      emit noted(notes.join(QLatin1Char('\n')));
 }
 
 bool Session::save(const std::filesystem::path &file)

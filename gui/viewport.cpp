@@ -157,12 +157,21 @@ void Viewport::setGrid(bool on)
    reload();
 }
 
+void Viewport::showSurface(std::shared_ptr<const render::Surface> surface)
+{
+   m_scene.setSurface(std::move(surface));
+   updateReach();
+   update();
+}
+
 void Viewport::showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement)
 {
    const bool moved = frame != nullptr;
    if (moved != m_moved)
       m_builder->leave();
    m_moved = moved;
+   if (moved)
+      m_scene.setSurface(nullptr);
    m_scene.setFrame(std::move(frame), byDisplacement);
    update();
 }

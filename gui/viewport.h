@@ -29,6 +29,8 @@ public:
    void setOrthographic(bool on);
    void setHierarchyView(bool on);
    void setGrid(bool on);
+   /// Parts or struts in the place of cells, until the design changes or moves; null draws cells.
+   void showSurface(std::shared_ptr<const render::Surface> surface);
    /// Null: at rest.
    void showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement);
    /// Cells to outline until others are, or the design changes.

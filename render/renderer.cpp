@@ -4,6 +4,7 @@
 #include "render/gl.h"
 #include "render/overlay_pass.h"
 #include "render/shaders.h"
+#include "render/surface_pass.h"
 
 #include <algorithm>
 #include <string_view>
@@ -20,6 +21,7 @@ struct Renderer::Self
 {
    CellPass cells;
    OverlayPass overlays;
+   SurfacePass surface;
    Program background;
    VertexArray nothing;
    Batch boxes, grid, ghost, lines, screenFill, screenLines;
@@ -32,6 +34,8 @@ struct Renderer::Self
    Picture picture;
 
    void drawBackground();
+   /// About an anchor, to clip space.
+   Eigen::Matrix4f transformAbout(const Vec3 &anchor) const;
    void drawScene(const Eigen::Matrix4f &transform);
    void drawOverlay(const Eigen::Matrix4f &transform);
 };
@@ -47,6 +51,8 @@ Status Renderer::start()
    if (Status status = m_self->cells.start(); !status)
       return status;
    if (Status status = m_self->overlays.start(); !status)
+      return status;
+   if (Status status = m_self->surface.start(); !status)
       return status;
    return m_self->background.build("", kBackgroundVertex, kBackgroundFragment);
 }
@@ -88,6 +94,12 @@ void Renderer::setBoxes(std::span<const SolidBox> boxes)
    m_self->stale = m_self->upload = true;
 }
 
+void Renderer::setSurface(const Surface &surface)
+{
+   m_self->surface.setSurface(surface);
+   m_self->stale = true;
+}
+
 void Renderer::setGrid(std::span<const Line> lines)
 {
    m_self->gridList.assign(lines.begin(), lines.end());
@@ -122,6 +134,13 @@ void Renderer::Self::drawBackground()
    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+Eigen::Matrix4f Renderer::Self::transformAbout(const Vec3 &anchor) const
+{
+   Mat4 model = Mat4::Identity();
+   model.block<3, 1>(0, 3) = anchor;
+   return (camera.projection() * camera.view() * model).cast<float>();
+}
+
 void Renderer::Self::drawScene(const Eigen::Matrix4f &transform)
 {
    glDisable(GL_BLEND);
@@ -139,6 +158,7 @@ void Renderer::Self::drawScene(const Eigen::Matrix4f &transform)
    const auto lineWidth = static_cast<float>(0.9 * picture.scale);
    cells.draw(camera, transform, lineWidth);
    overlays.drawBoxes(boxes, transform, lineWidth);
+   surface.draw(transformAbout(surface.anchor()), lineWidth);
    glEnable(GL_BLEND);
    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
    glDepthMask(GL_FALSE);
@@ -198,9 +218,7 @@ Status Renderer::draw(const Camera &camera, const Picture &picture)
    self.picture = picture;
    self.overlays.setScale(static_cast<float>(picture.scale));
 
-   Mat4 model = Mat4::Identity();
-   model.block<3, 1>(0, 3) = self.cells.anchor();
-   const Eigen::Matrix4f transform = (camera.projection() * camera.view() * model).cast<float>();
+   const Eigen::Matrix4f transform = self.transformAbout(self.cells.anchor());
    glViewport(0, 0, picture.width, picture.height);
    glDisable(GL_SCISSOR_TEST);
    if (self.stale) {

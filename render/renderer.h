@@ -16,6 +16,8 @@
 
 namespace diatom::render {
 
+struct Surface;
+
 /// Brightness of a face by its outward normal, 0 to about 1.
 double shade(const Vec3 &normal);
 
@@ -39,6 +41,8 @@ public:
    /// Empty: rest.
    void setPoses(std::span<const float> position, std::span<const float> turn);
    void setBoxes(std::span<const SolidBox> boxes);
+   /// Drawn beside cells and boxes; one without corners is none.
+   void setSurface(const Surface &surface);
    void setGrid(std::span<const Line> lines);
    void setBackground(Rgba low, Rgba high);
    void setOverlay(const Overlay &overlay);

@@ -26,6 +26,7 @@ void SceneView::setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool compo
    m_grid.clear();
    m_bounds.setEmpty();
    m_frame.reset();
+   m_surface.reset();
    m_newMesh = true;
    m_boxed = false;
    if (!m_hierarchy)
@@ -79,14 +80,27 @@ void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool byDisplacemen
    m_newFrame = true;
 }
 
+void SceneView::setSurface(std::shared_ptr<const Surface> surface)
+{
+   if (surface == m_surface)
+      return;
+   m_surface = std::move(surface);
+   m_newMesh = true;
+   if (m_surface)
+      m_bounds.extend(m_surface->bounds);
+}
+
 void SceneView::upload(Renderer &renderer)
 {
    if (m_newMesh) {
-      renderer.setCells(m_mesh);
-      renderer.setBoxes(m_boxes);
+      CellMesh none;
+      none.anchor = m_mesh.anchor; // what lies over the scene is about it
+      renderer.setCells(m_surface ? none : m_mesh);
+      renderer.setBoxes(m_surface ? std::span<const SolidBox>() : m_boxes);
+      renderer.setSurface(m_surface ? *m_surface : Surface());
       renderer.setGrid(m_grid);
    }
-   if (m_newMesh || m_newFrame) {
+   if (!m_surface && (m_newMesh || m_newFrame)) {
       poses(renderer);
       colors(renderer);
    }

@@ -4,6 +4,7 @@
 #include "render/cell_mesh.h"
 #include "render/composite_boxes.h"
 #include "render/renderer.h"
+#include "render/surface.h"
 #include "scene/simulation.h"
 
 #include <memory>
@@ -31,6 +32,9 @@ public:
 
    void setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool composites, bool grid);
    void setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement);
+   /// Drawn in the place of cells and boxes until another design is set; null draws those again.
+   void setSurface(std::shared_ptr<const Surface> surface);
+   const std::shared_ptr<const Surface> &surface() const { return m_surface; }
    /// Hands over what changed since the last call; needs the renderer's context.
    void upload(Renderer &renderer);
 
@@ -54,6 +58,7 @@ private:
    std::vector<SolidBox> m_boxes;
    std::vector<Line> m_grid;
    Bounds m_bounds;
+   std::shared_ptr<const Surface> m_surface;
    std::shared_ptr<const Moment> m_frame;
    std::vector<std::int64_t> m_sceneCell; // by slot, of the frame's scene
    bool m_byDisplacement = false, m_boxed = false;

@@ -60,7 +60,23 @@ void main()
 }
 )";
 
-/// Both of the above. Lines fade where cells become too small on screen to need them.
+/// Parts and struts: triangles that are lit already.
+inline constexpr const char *kSurfaceVertex = R"(
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 edge;
+layout(location = 2) in vec3 tint;
+uniform mat4 transform;
+flat out vec3 color;
+out vec4 along;
+void main()
+{
+   gl_Position = transform * vec4(position, 1.0);
+   color = tint;
+   along = vec4(edge, 0.0);
+}
+)";
+
+/// All of the above. Lines fade where cells become too small on screen to need them.
 inline constexpr const char *kFaceFragment = R"(
 flat in vec3 color;
 in vec4 along;

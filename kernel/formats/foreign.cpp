@@ -1,5 +1,6 @@
 #include "formats/foreign.h"
 
+#include "core/file.h"
 #include "formats/earlier_programs.h"
 #include "formats/vox.h"
 #include "formats/voxcad.h"
@@ -29,15 +30,6 @@ constexpr ForeignFormat kFormats[] = {
 
 std::span<const ForeignFormat> foreignFormats() { return kFormats; }
 
-Result<std::string> writeForeign(const ForeignFormat &format, const Design &design,
-                                 const Hierarchy &hierarchy, std::vector<std::string> &notes, const Job &job)
-{
-   if (!design.referenceMeshes.empty())
-      notes.push_back(fmt::format("{} reference meshes are left out: {} has none",
-                                  design.referenceMeshes.size(), format.program));
-   return format.write(design, hierarchy, notes, job);
-}
-
 const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem::path &file)
 {
    const std::string suffix = file.extension().string();
@@ -50,6 +42,19 @@ const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem:
       }
    }
    return found;
+}
+
+Status writeForeign(const Design &design, const Hierarchy &hierarchy, const ForeignFormat &format,
+                    const std::filesystem::path &file, std::vector<std::string> &notes, const Job &job)
+{
+   if (!design.referenceMeshes.empty())
+      notes.push_back(fmt::format("{} reference meshes are left out: {} has none",
+                                  design.referenceMeshes.size(), format.program));
+   const auto bytes = format.write(design, hierarchy, notes, job);
+   const Status saved = bytes ? writeFileAtomic(file, *bytes) : Status(bytes.error());
+   if (!saved)
+      return Error{saved.error().code, fmt::format("{}: {}", file.string(), saved.error().message)};
+   return {};
 }
 
 } // namespace diatom

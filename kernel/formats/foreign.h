@@ -23,10 +23,11 @@ struct ForeignFormat
 };
 
 std::span<const ForeignFormat> foreignFormats();
-/// The file's bytes; notes tell every loss. Errors: what the format cannot hold.
-Result<std::string> writeForeign(const ForeignFormat &format, const Design &design,
-                                 const Hierarchy &hierarchy, std::vector<std::string> &notes, const Job &job);
 /// By name, else by the suffix of the file where that says it all; null when there is none.
 const ForeignFormat *foreignFormat(std::string_view name, const std::filesystem::path &file);
+
+/// Written whole or not at all; `notes` tells what the format cannot hold. Errors name the file.
+Status writeForeign(const Design &design, const Hierarchy &hierarchy, const ForeignFormat &format,
+                    const std::filesystem::path &file, std::vector<std::string> &notes, const Job &job);
 
 } // namespace diatom

@@ -35,6 +35,7 @@ private slots:
    void exportWritesOneFilePerMaterial();
    void planWritesAProgram();
    void renderWritesAPicture();
+   void renderDrawsPartsAndStruts();
    void convertKeepsTheDesign();
    void doAndReplayMakeTheSameDesign();
    void checkFindsAConflictAndExitsWithFive();
@@ -245,6 +246,41 @@ void CommandsTest::renderWritesAPicture()
    DIATOM_VERIFY_OK(png);
    QVERIFY(png->starts_with("\x89PNG"));
    QVERIFY(png->size() > 1000); // more than one colour
+}
+
+// As many triangles as an export writes, another picture than that of cells, and one sentence where there is
+// nothing to draw.
+void CommandsTest::renderDrawsPartsAndStruts()
+{
+   const QString truss = sample("octahedral-truss.diatom");
+   const auto draw = [&](const QStringList &more) {
+      return diatomRuns(QStringList{"render", truss, file("d.png"), "--size", "160x100", "--json"} + more);
+   };
+   const auto picture = [&] { return *readFile(file("d.png").toStdString()); };
+   QCOMPARE(draw({}).exit, 0);
+   const std::string cells = picture();
+   const Outcome parts = draw({"--as", "parts"});
+   QVERIFY2(parts.exit == 0, parts.err.constData());
+   const std::string ofParts = picture();
+   const Outcome struts = draw({"--as", "struts"});
+   QVERIFY2(struts.exit == 0, struts.err.constData());
+   QVERIFY(cells != ofParts && ofParts != picture() && picture() != cells);
+   for (const auto &[what, drawn] : {std::pair{"parts", parts}, std::pair{"struts", struts}}) {
+      const Outcome written = diatomRuns({"export", truss, file("d.obj"), "--as", QString(what), "--json"});
+      QCOMPARE(written.exit, 0);
+      QCOMPARE(drawn.object()["triangles"], written.object()["files"].toArray()[0].toObject()["triangles"]);
+   }
+   QCOMPARE(draw({"--as", "parts", "--parts", "snap_voxel"}).exit, 0);
+   QVERIFY(picture() == ofParts);
+
+   const Outcome unknown = draw({"--as", "parts", "--parts", "gik"});
+   QVERIFY(unknown.exit != 0);
+   QVERIFY2(unknown.err.contains("makes no parts for the lattice"), unknown.err.constData());
+   QCOMPARE(unknown.err.count('\n'), 1);
+   for (const QStringList &wrong :
+        {QStringList{"--as", "parts", "--at-time", "1"}, QStringList{"--as", "struts", "--parts", "gik"},
+         QStringList{"--detail", "0"}, QStringList{"--as", "bricks"}})
+      QCOMPARE(draw(wrong).exit, 2);
 }
 
 void CommandsTest::convertKeepsTheDesign()
