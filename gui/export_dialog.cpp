@@ -192,13 +192,16 @@ QString ExportDialog::note() const
 {
    const QFileInfo file(m_file->text());
    const QString solids = m_solids->currentData().toString();
+   QStringList notes;
    if (format().geometry && solids == QLatin1String(kFiles))
-      return tr("Each file has the id of its material in its name; those there already are replaced.");
+      notes += tr("Each file has the id of its material in its name; those there already are replaced.");
+   else if (file.exists())
+      notes += tr("%1 is there already and will be replaced.").arg(file.fileName());
    if (format().geometry == GeometryFormat::stl && solids == QLatin1String(kApart))
-      return file.exists()
-                 ? tr("%1 is there already and will be replaced. STL holds one solid.").arg(file.fileName())
-                 : tr("STL holds one solid without materials.");
-   return file.exists() ? tr("%1 is there already and will be replaced.").arg(file.fileName()) : QString();
+      notes += tr("STL holds one solid without materials.");
+   if (format().geometry && isGltf(*format().geometry))
+      notes += tr("glTF is in metres.");
+   return notes.join(QLatin1Char(' '));
 }
 
 void ExportDialog::refresh()

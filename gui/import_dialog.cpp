@@ -54,10 +54,11 @@ ImportDialog::ImportDialog(std::shared_ptr<const Catalogue> catalogue, const QSt
    setObjectName(QStringLiteral("importDialog"));
    setWindowTitle(tr("Fill a Mesh with Cells"));
    addChoices();
-   auto *mesh = new QLabel(tr("%1: %2 triangles. %3")
-                               .arg(file, QLocale().toString(static_cast<qulonglong>(facts.triangles)),
-                                    QString::fromStdString(facts.faults)),
-                           this);
+   QString what =
+       tr("%1: %2 triangles").arg(file, QLocale().toString(static_cast<qulonglong>(facts.triangles)));
+   if (!facts.faults.empty())
+      what += QStringLiteral("; ") + QString::fromStdString(facts.faults);
+   auto *mesh = new QLabel(what, this);
    mesh->setObjectName(QStringLiteral("import.mesh"));
    auto *form = new QFormLayout;
    form->addRow(tr("&Lattice"), m_lattice);

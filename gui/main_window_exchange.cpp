@@ -59,8 +59,11 @@ QString contactsText(const std::vector<ExportedFile> &files, GeometryFormat form
    }
    if (edges + corners == 0)
       return {};
-   const QString where = MainWindow::tr("It touches itself along %1 edges and at %2 more corners")
-                             .arg(countText(edges), countText(corners));
+   const QString where =
+       corners == 0 ? MainWindow::tr("It touches itself along %1 edges").arg(countText(edges))
+       : edges == 0 ? MainWindow::tr("It touches itself at %1 corners").arg(countText(corners))
+                    : MainWindow::tr("It touches itself along %1 edges and at %2 more corners")
+                          .arg(countText(edges), countText(corners));
    return QLatin1Char(' ') +
           (format == GeometryFormat::stl
                ? MainWindow::tr("%1; programs that read STL part it there.").arg(where)
