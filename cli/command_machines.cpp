@@ -43,7 +43,7 @@ nlohmann::ordered_json settingsOf(const Provided &provided)
 }
 
 /// One row per thing on offer; one that cannot be created tells why in its verdict.
-nlohmann::ordered_json rowOf(const Provided &provided, const Candidate &candidate, Context &context)
+nlohmann::ordered_json machineRow(const Provided &provided, const Candidate &candidate, Context &context)
 {
    nlohmann::ordered_json row{{"id", provided.id}, {"name", provided.name}, {"verdict", candidate.verdict}};
    if (candidate.accepted) {
@@ -89,8 +89,8 @@ void addMachines(CLI::App &app, Context &context)
       for (const Candidate &candidate : context.catalogue()->candidates())
          for (const Provided &provided : candidate.manifest.provides)
             if (provided.interface == DIATOM_MACHINE_1)
-               rows.push_back(context.json ? rowOf(provided, candidate, context)
-                                           : shortRow(rowOf(provided, candidate, context)));
+               rows.push_back(context.json ? machineRow(provided, candidate, context)
+                                           : shortRow(machineRow(provided, candidate, context)));
       context.printTable(rows);
    });
 }
