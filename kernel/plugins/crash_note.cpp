@@ -38,7 +38,7 @@ void put(int file, const char *text)
 
 /// Writes the note and lets the crash take its course: the instruction is met again, with the earlier
 /// handler.
-void onCrash(int signal)
+void onCrash(int signal, siginfo_t *info, void *)
 {
    for (std::size_t i = 0; i < kCrashes.size(); ++i)
       if (kCrashes[i] == signal)
@@ -73,19 +73,24 @@ CallNote::~CallNote()
 
 void leaveNotesOfCrashes()
 {
-   static std::once_flag once;
-   std::call_once(once, [] {
-      const std::string path = noteFile().string();
-      if (path.empty() || path.size() >= notePath.size() || !makeFolder(noteFile().parent_path()).ok())
-         return;
-      std::memcpy(notePath.data(), path.c_str(), path.size() + 1);
-      struct sigaction action = {};
-      action.sa_sigaction = onCrash;
-      action.sa_flags =
-          SA_SIGINFO | SA_ONSTACK; // where the program has a stack for it, also an overflow is noted
-      for (std::size_t i = 0; i < kCrashes.size(); ++i)
-         sigaction(kCrashes[i], &action, &earlier[i]);
-   });
+   static std::mutex mutex;
+   const std::lock_guard lock(mutex);
+   const std::string path = noteFile().string();
+   if (path.empty() || path.size() >= notePath.size() || !makeFolder(noteFile().parent_path()).ok())
+      return;
+   std::memcpy(notePath.data(), path.c_str(), path.size() + 1);
+   struct sigaction action = {};
+   action.sa_sigaction = onCrash;
+   action.sa_flags =
+       SA_SIGINFO | SA_ONSTACK; // where the program has a stack for it, also an overflow is noted
+   for (std::size_t i = 0; i < kCrashes.size(); ++i) {
+      struct sigaction present = {};
+      sigaction(kCrashes[i], nullptr, &present);
+      if (present.sa_sigaction == onCrash)
+         continue;
+      earlier[i] = present;
+      sigaction(kCrashes[i], &action, nullptr);
+   }
 }
 
 std::vector<CrashNote> takeCrashNotes()

@@ -22,6 +22,7 @@ struct FalseLattice
    void *right = nullptr;
    std::string fault;
    std::vector<double> offset{0, 0, 0};
+   std::vector<std::int32_t> step{1, 0, 0};
    diatom_motif record{};
 
    static std::int32_t create(const diatom_call *call, const diatom_create *given, void **self)
@@ -60,7 +61,9 @@ struct FalseLattice
       } else if (fault == "counts") {
          record.sites = 7;
       } else if (fault == "limits") {
+         record.supercell_step = step.data();
          record.supercell_longest = -3;
+         record.supercell_default = 2;
       } else if (fault == "crash") {
          *static_cast<volatile int *>(nullptr) = 1;
       } else if (fault == "throws") {

@@ -32,8 +32,8 @@ public:
        : m_fault(values.text("fault")), m_cells(scene.cells())
    {
       const std::int64_t rows = m_fault == "counts" ? m_cells - 1 : m_fault == "limits" ? -5 : m_cells;
-      m_output = {{{"position", "m", rows, 3}, {"rotation", "", m_cells, 4}}};
-      m_outputs = {sizeof m_outputs, 2, m_output.data()};
+      m_output = {{{"position", "m", rows, 3}, {"rotation", "", m_cells, 4}, {"energy", "J", 1, 6}}};
+      m_outputs = {sizeof m_outputs, 3, m_output.data()};
    }
 
    void apply(diatom::sdk::Call, std::span<const diatom_channel>) {}
@@ -47,16 +47,18 @@ public:
       return DIATOM_OK;
    }
    const diatom_outputs &outputs() const { return m_outputs; }
-   void read(diatom::sdk::Call, std::int64_t, std::int64_t, std::int64_t count, double *values) const
+   void read(diatom::sdk::Call, std::int64_t output, std::int64_t, std::int64_t count, double *values) const
    {
-      for (std::int64_t i = 0; i < count * 3; ++i)
-         values[i] = m_fault == "not finite" && i == 4 ? std::numeric_limits<double>::quiet_NaN() : 0;
+      const std::int64_t numbers = count * m_output[static_cast<std::size_t>(output)].stride;
+      for (std::int64_t i = 0; i < numbers; ++i)
+         values[i] =
+             m_fault == "not finite" && output == 0 && i == 4 ? std::numeric_limits<double>::quiet_NaN() : 0;
    }
 
 private:
    std::string m_fault;
    std::int64_t m_cells;
-   std::array<diatom_output, 2> m_output{};
+   std::array<diatom_output, 3> m_output{};
    diatom_outputs m_outputs{};
 };
 

@@ -31,6 +31,7 @@ public:
          m_gravity = gravity.row(0)[2];
       m_output[0] = {"position", "m", scene.cells(), 3};
       m_output[1] = {"rotation", "", scene.cells(), 4};
+      m_output[2] = {"energy", "J", 1, 6};
    }
    void apply(Call, std::span<const diatom_channel>) { throw Failure(DIATOM_UNSUPPORTED, "make a new one"); }
    std::int32_t step(Call call, const diatom_step_request &request, diatom_step_result &result)
@@ -55,6 +56,8 @@ public:
    const diatom_outputs &outputs() const { return m_outputs; }
    void read(Call, std::int64_t output, std::int64_t first, std::int64_t count, double *values) const
    {
+      if (output == 2)
+         return readEnergy(values);
       for (std::int64_t i = first; i < first + count; ++i) {
          const double *rest = m_rest.data() + 3 * i;
          if (output == 0) {
@@ -69,9 +72,19 @@ public:
    }
 
 private:
+   /// Of cells of one kilogram each: what they win in motion they lose in height.
+   void readEnergy(double *values) const
+   {
+      const double speed = m_gravity * m_time, cells = static_cast<double>(m_rest.size()) / 3;
+      for (int k = 0; k < 6; ++k)
+         values[k] = 0;
+      values[0] = cells * speed * speed / 2;
+      values[2] = -values[0];
+   }
+
    std::vector<double> m_rest;
    double m_gravity = 0, m_time = 0;
-   diatom_output m_output[2] = {};
-   diatom_outputs m_outputs{sizeof m_outputs, 2, m_output};
+   diatom_output m_output[3] = {};
+   diatom_outputs m_outputs{sizeof m_outputs, 3, m_output};
 };
 DIATOM_SOLVER(Falling)
