@@ -1,11 +1,13 @@
 #include "cli/scene_json.h"
 
 #include "core/text.h"
+#include "scene/fields.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace diatom::cli {
 
@@ -146,7 +148,9 @@ Status applyEffects(const std::string &text, Setup &setup)
       setup.effects.clear();
       return {};
    }
-   const auto known = effectNames();
+   auto known = effectNames();
+   for (std::string &field : fieldNames(setup))
+      known.push_back(std::move(field));
    for (std::size_t begin = 0; begin <= text.size();) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
       const std::string item = text.substr(begin, end - begin);

@@ -19,12 +19,12 @@ set(CPACK_DEBIAN_DIATOM_PACKAGE_NAME diatom)
 set(CPACK_DEBIAN_STUDIO_PACKAGE_NAME diatom-studio)
 set(CPACK_DEBIAN_SDK_PACKAGE_NAME diatom-sdk)
 set(CPACK_COMPONENT_DIATOM_DESCRIPTION "Design, simulate and assemble digital materials: command line
- Lattices, decompositions into parts, machines and solvers, as plugins, with
- the program that works on designs without a display.")
+Lattices, decompositions into parts, machines and solvers, as plugins, with
+the program that works on designs without a display.")
 set(CPACK_COMPONENT_STUDIO_DESCRIPTION "Design, simulate and assemble digital materials: desktop program
- The graphical surface of diatom.")
+The graphical surface of diatom.")
 set(CPACK_COMPONENT_SDK_DESCRIPTION "Plugins for diatom: headers, CMake package and templates
- What the author of a lattice, a decomposition, a machine or a solver needs.")
+What the author of a lattice, a decomposition, a machine or a solver needs.")
 set(CPACK_DEBIAN_STUDIO_PACKAGE_DEPENDS "diatom (= ${PROJECT_VERSION})")
 # Headers say what a plugin is; building and trying one takes these.
 set(CPACK_DEBIAN_SDK_PACKAGE_DEPENDS "cmake (>= 3.25)")
