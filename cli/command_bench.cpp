@@ -24,11 +24,8 @@ struct Group
 };
 
 constexpr Group kGroups[] = {
-    {"cells", cellBenchmarks},
-    {"export", exportBenchmarks},
-    {"import", importBenchmarks},
-    {"mechanics", mechanicsBenchmarks},
-    {"plugins", pluginBenchmarks},
+    {"cells", cellBenchmarks},          {"export", exportBenchmarks},  {"import", importBenchmarks},
+    {"mechanics", mechanicsBenchmarks}, {"plugins", pluginBenchmarks},
 };
 
 struct BenchOptions

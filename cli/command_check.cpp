@@ -1,8 +1,7 @@
 // diatom check: every problem a design has, from its wiring to its assembly.
-#include "assembly/plan.h"
+#include "assembly/chosen_parts.h"
 #include "cli/commands.h"
 #include "cli/scene_json.h"
-#include "parts/decomposition.h"
 #include "scene/problems.h"
 
 #include <CLI/CLI.hpp>
@@ -33,8 +32,8 @@ void appendNotExamined(std::vector<Problem> &problems, const char *what, const E
 void checkParts(const Context::Input &input, Context &context, std::vector<Problem> &problems)
 {
    const AssemblySetup &setup = input.opened.design.assembly;
-   const auto maker = PartMaker::make(*context.catalogue(), setup.parts, setup.partsValues,
-                                      input.opened.design.model.lattice.id, context.job());
+   const auto maker =
+       chosenParts(*context.catalogue(), setup, "", input.opened.design.model.lattice.id, context.job());
    if (!maker)
       return appendNotExamined(problems, "parts and their placing were", maker.error());
    const auto parts = (*maker)->decompose(*input.hierarchy, context.job());

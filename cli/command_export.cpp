@@ -3,6 +3,7 @@
 #include "cli/lengths.h"
 #include "cli/number_checks.h"
 
+#include "assembly/chosen_parts.h"
 #include "io/export_files.h"
 
 #include <CLI/CLI.hpp>
@@ -88,7 +89,8 @@ class Export
 public:
    Export(const ExportArguments &arguments, GeometryFormat format, const Context::Input &input,
           Context &context)
-       : m_arguments(arguments), m_format(format), m_hierarchy(*input.hierarchy), m_context(context)
+       : m_arguments(arguments), m_format(format), m_hierarchy(*input.hierarchy),
+         m_assembly(input.opened.design.assembly), m_context(context)
    {
       m_unitName = !arguments.unit.empty() ? arguments.unit : isGltf() ? "m" : "mm";
    }
@@ -116,9 +118,9 @@ public:
       options.unit = unit();
       std::shared_ptr<const PartMaker> maker;
       if (m_arguments.as == "parts") {
-         auto made = PartMaker::make(*m_context.catalogue(),
-                                     fullId(*m_context.catalogue(), DIATOM_PARTS_1, m_arguments.parts), {},
-                                     m_hierarchy.model().lattice.id, m_context.job());
+         auto made = chosenParts(*m_context.catalogue(), m_assembly,
+                                 fullId(*m_context.catalogue(), DIATOM_PARTS_1, m_arguments.parts),
+                                 m_hierarchy.model().lattice.id, m_context.job());
          if (!made)
             return made.error();
          maker = *std::move(made);
@@ -183,6 +185,7 @@ private:
    const ExportArguments &m_arguments;
    GeometryFormat m_format;
    const Hierarchy &m_hierarchy;
+   const AssemblySetup &m_assembly;
    Context &m_context;
    std::string m_unitName;
 };

@@ -2,10 +2,12 @@
 // parts in every way that its lattice has.
 #include "cli/commands.h"
 
+#include "assembly/chosen_parts.h"
 #include "parts/fitting_parts.h"
 #include "parts/part_list.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
@@ -117,6 +119,12 @@ void listParts(const std::string &file, const std::string &chosen, Context &cont
    if (!input)
       return;
    const std::string &lattice = input->lattice->spec().id;
+   const AssemblySetup &setup = input->opened.design.assembly;
+   if (!setup.parts.empty() && !context.catalogue()->offer(DIATOM_PARTS_1, setup.parts))
+      context.note(
+          fmt::format("the design is to be made of {}, which is not installed; `diatom plugins` lists what "
+                      "there is",
+                      setup.parts));
    std::vector<std::string> ids{chosen};
    if (chosen.empty()) {
       ids.clear();
@@ -127,7 +135,7 @@ void listParts(const std::string &file, const std::string &chosen, Context &cont
    Error problem{ErrorCode::unsupported, "no installed plugin makes parts for the lattice " + lattice +
                                              "; \"diatom parts\" lists those there are"};
    for (const std::string &id : ids) {
-      const auto maker = PartMaker::make(*context.catalogue(), id, {}, lattice, context.job());
+      const auto maker = chosenParts(*context.catalogue(), setup, id, lattice, context.job());
       const auto list = maker ? partList(**maker, *input, context.job()) : maker.error();
       if (list)
          lists.push_back(*list);

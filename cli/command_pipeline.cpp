@@ -1,12 +1,11 @@
 // diatom pipeline: the main job in one go: open, simulate, export STL by material, plan, write the machine
 // program, render.
-#include "assembly/plan.h"
+#include "assembly/chosen_parts.h"
 #include "cli/commands.h"
 #include "cli/picture.h"
 #include "core/file.h"
 #include "core/text.h"
 #include "io/stl.h"
-#include "parts/decomposition.h"
 #include "scene/scene.h"
 #include "scene/simulation.h"
 
@@ -117,8 +116,8 @@ private:
    {
       m_stage = "assembly";
       const AssemblySetup &setup = m_input.opened.design.assembly;
-      auto maker = PartMaker::make(*m_context.catalogue(), setup.parts, setup.partsValues,
-                                   m_input.lattice->spec().id, m_context.job());
+      auto maker =
+          chosenParts(*m_context.catalogue(), setup, "", m_input.lattice->spec().id, m_context.job());
       if (!maker)
          return maker.error();
       auto parts = (*maker)->decompose(*m_input.hierarchy, m_context.job());

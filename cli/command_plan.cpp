@@ -1,9 +1,8 @@
 // diatom plan: the order of assembly of a design, and the program that makes a machine build it.
 #include "cli/commands.h"
 
-#include "assembly/plan.h"
+#include "assembly/chosen_parts.h"
 #include "core/file.h"
-#include "parts/decomposition.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -62,8 +61,7 @@ Result<Planned> planAndWrite(const PlanArguments &arguments, const Context::Inpu
    const auto machine = Machine::make(catalogue, setup->machine, setup->machineValues, job);
    if (!machine)
       return machine.error();
-   const auto maker =
-       PartMaker::make(catalogue, setup->parts, setup->partsValues, input.lattice->spec().id, job);
+   const auto maker = chosenParts(catalogue, *setup, "", input.lattice->spec().id, job);
    if (!maker)
       return maker.error();
    const auto parts = (*maker)->decompose(*input.hierarchy, job);

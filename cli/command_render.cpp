@@ -1,9 +1,9 @@
 // diatom render: a picture of a design, at rest or at a moment of its simulation, without any display.
+#include "assembly/chosen_parts.h"
 #include "cli/commands.h"
 #include "cli/number_checks.h"
 #include "cli/picture.h"
 #include "core/text.h"
-#include "parts/decomposition.h"
 #include "render/surface.h"
 #include "scene/simulation.h"
 
@@ -81,8 +81,9 @@ Result<std::shared_ptr<const render::Surface>> surfaceOf(const Context::Input &i
    std::shared_ptr<const PartMaker> maker;
    if (options.as == "parts") {
       const Catalogue &catalogue = *context.catalogue();
-      auto made = PartMaker::make(catalogue, fullId(catalogue, DIATOM_PARTS_1, options.parts), {},
-                                  input.lattice->spec().id, context.job());
+      auto made = chosenParts(catalogue, input.opened.design.assembly,
+                              fullId(catalogue, DIATOM_PARTS_1, options.parts), input.lattice->spec().id,
+                              context.job());
       if (!made)
          return made.error();
       maker = *std::move(made);

@@ -2,6 +2,7 @@
 // exported parts and struts look.
 #include "gui/main_window.h"
 
+#include "assembly/chosen_parts.h"
 #include "gui/export_dialog.h"
 #include "gui/import_dialog.h"
 #include "render/surface.h"
@@ -35,7 +36,7 @@ Result<Written> writeAsAsked(const ExportRequest &request, const Catalogue &cata
    }
    std::shared_ptr<const PartMaker> maker;
    if (!request.parts.empty()) {
-      auto made = PartMaker::make(catalogue, request.parts, {}, design.model.lattice.id, job);
+      auto made = chosenParts(catalogue, design.assembly, request.parts, design.model.lattice.id, job);
       if (!made)
          return made.error();
       maker = *std::move(made);
@@ -104,7 +105,7 @@ QString sentence(const ExportRequest &request, const Written &written, std::uint
 
 /// Parts in full detail where there are few.
 Result<render::Surface> surfaceFor(GeometryOptions::What what, const Catalogue &catalogue,
-                                   const Hierarchy &hierarchy, const Job &job)
+                                   const AssemblySetup &assembly, const Hierarchy &hierarchy, const Job &job)
 {
    constexpr std::uint64_t kFewCells = 2000;
    GeometryOptions options;
@@ -112,7 +113,7 @@ Result<render::Surface> surfaceFor(GeometryOptions::What what, const Catalogue &
    options.detail = hierarchy.cells() > kFewCells ? 0 : -1;
    std::shared_ptr<const PartMaker> maker;
    if (what == GeometryOptions::What::parts) {
-      auto made = PartMaker::make(catalogue, {}, {}, hierarchy.lattice().spec().id, job);
+      auto made = chosenParts(catalogue, assembly, "", hierarchy.lattice().spec().id, job);
       if (!made)
          return made.error();
       maker = *std::move(made);
@@ -225,9 +226,8 @@ void MainWindow::showAs(GeometryOptions::What what)
    auto result = std::make_shared<std::optional<Result<render::Surface>>>();
    startTask(
        what == GeometryOptions::What::parts ? tr("Making parts") : tr("Making struts"),
-       [result, what, hierarchy, catalogue = m_session.catalogue()](const Job &job) {
-          result->emplace(surfaceFor(what, *catalogue, *hierarchy, job));
-       },
+       [result, what, hierarchy, catalogue = m_session.catalogue(), assembly = m_session.design().assembly](
+           const Job &job) { result->emplace(surfaceFor(what, *catalogue, assembly, *hierarchy, job)); },
        [this, result, hierarchy] {
           if (!result->value().ok())
              showFailure(result->value().error());

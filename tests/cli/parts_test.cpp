@@ -36,6 +36,7 @@ private slots:
    void oneWayCanBePicked();
    void bricksAreCountedByLengthAndWeighed();
    void aWayThatDoesNotSuitIsSaidAndTheOthersListed();
+   void partsThatAreMissingAreToldAndNotReplaced();
    void aLatticeWithoutPartsSaysSo();
 };
 
@@ -105,6 +106,26 @@ void PartsCommandTest::aWayThatDoesNotSuitIsSaidAndTheOthersListed()
    QVERIFY2(ran.err.contains("1.17") && ran.err.contains("1.08"), ran.err.constData());
    QVERIFY2(ran.out.contains("parts.gik ") && ran.out.contains("all"), ran.out.constData());
    QVERIFY(!ran.out.contains("gik_lego"));
+}
+
+void PartsCommandTest::partsThatAreMissingAreToldAndNotReplaced()
+{
+   QByteArray text = design("gik", R"([["a", [0, 0, 0]]])");
+   text.insert(text.lastIndexOf('}'), R"(, "parts": {"id": "org.nobody.parts.wonder", "values": {}})");
+   const auto listed = test::diatomRuns({"parts", "-"}, text);
+   QVERIFY2(listed.exit == 0, listed.err.constData());
+   QVERIFY2(listed.err.contains("org.nobody.parts.wonder") && listed.err.contains("not installed"),
+            listed.err.constData());
+   const QTemporaryDir folder;
+   const QString out = folder.filePath("out.stl");
+   const auto exported = test::diatomRuns({"export", "-", out, "--as", "parts"}, text);
+   QVERIFY(exported.exit != 0);
+   QVERIFY2(exported.err.contains("org.nobody.parts.wonder"), exported.err.constData());
+   QVERIFY(!QFile::exists(out));
+   // Another way may be asked for by name.
+   const auto asked = test::diatomRuns({"export", "-", out, "--as", "parts", "--parts", "gik"}, text);
+   QVERIFY2(asked.exit == 0, asked.err.constData());
+   QVERIFY(QFile::exists(out));
 }
 
 void PartsCommandTest::aLatticeWithoutPartsSaysSo()
