@@ -4,6 +4,7 @@
 #include "cli/number_checks.h"
 #include "cli/picture.h"
 #include "core/text.h"
+#include "formats/reference_meshes.h"
 #include "render/surface.h"
 #include "scene/simulation.h"
 
@@ -116,6 +117,14 @@ Status draw(const Context::Input &input, const RenderOptions &options, std::pair
          return surface.error();
       request.surface = *std::move(surface);
    }
+   const auto folder =
+       options.file == "-" ? std::filesystem::path() : std::filesystem::path(options.file).parent_path();
+   const auto references = loadReferenceMeshes(input.opened.design, folder, context.job());
+   if (!references)
+      return references.error();
+   for (const std::string &note : references->notes)
+      context.note(note);
+   request.references = std::make_shared<render::Surface>(render::surfaceOf(references->meshes));
    const auto drawn = drawPicture(input, request);
    if (!drawn)
       return drawn.error();

@@ -11,6 +11,7 @@ Result<PictureReport> drawPicture(const Context::Input &input, const PictureRequ
    render::SceneView view;
    view.setDesign(input.hierarchy, request.hierarchy, request.grid);
    view.setSurface(request.surface);
+   view.setReferences(request.references);
    render::Overlay overlay;
    render::Camera camera;
    camera.resize(request.width, request.height);

@@ -14,9 +14,10 @@ struct PictureRequest
    std::string out, view = "iso";
    int width = 1280, height = 800;
    bool hierarchy = false, grid = true;
-   bool byDisplacement = false;                    // with a legend; needs a moment
-   std::shared_ptr<const render::Moment> moment;   // null = at rest
-   std::shared_ptr<const render::Surface> surface; // in the place of cells
+   bool byDisplacement = false;                       // with a legend; needs a moment
+   std::shared_ptr<const render::Moment> moment;      // null = at rest
+   std::shared_ptr<const render::Surface> surface;    // in the place of cells
+   std::shared_ptr<const render::Surface> references; // beside them
 };
 
 struct PictureReport

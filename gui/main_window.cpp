@@ -129,6 +129,7 @@ void MainWindow::connectViews()
    connect(m_panel, &SimulationPanel::failed, this, showError);
    connect(m_panel, &SimulationPanel::evidenceChosen, m_viewport, &Viewport::setHighlight);
    connect(m_viewport, &Viewport::failed, this, showError);
+   connect(m_references, &ReferenceMenu::noted, this, showError);
    connect(m_viewport, &Viewport::playWanted, this, &MainWindow::togglePlay);
    connect(m_viewport, &Viewport::hoverChanged, this, [this] {
       m_address->setText(m_viewport->builder().address());

@@ -6,6 +6,7 @@
 #include "gui/hotbar.h"
 #include "gui/legend_widget.h"
 #include "gui/message_bar.h"
+#include "gui/reference_menu.h"
 #include "gui/session.h"
 #include "gui/simulation_panel.h"
 #include "gui/simulation_player.h"
@@ -92,6 +93,7 @@ private:
    Actions m_actions;
    MessageBar *m_messages;
    Viewport *m_viewport;
+   ReferenceMenu *m_references = nullptr;
    Hotbar *m_hotbar;
    SimulationPanel *m_panel;
    QDockWidget *m_panelDock;

@@ -48,6 +48,8 @@ void MainWindow::makeMenus()
       if (std::string_view(id) == "file") {
          makeNewMenu(menu);
          makeSamplesMenu(menu);
+         m_references = new ReferenceMenu(&m_session, m_viewport, menu);
+         menu->addMenu(m_references);
       }
       m_actions.addTo(menu, id);
    }

@@ -164,6 +164,13 @@ void Viewport::showSurface(std::shared_ptr<const render::Surface> surface)
    update();
 }
 
+void Viewport::showReferences(std::shared_ptr<const render::Surface> references)
+{
+   m_scene.setReferences(std::move(references));
+   updateReach();
+   update();
+}
+
 void Viewport::showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement)
 {
    const bool moved = frame != nullptr;

@@ -31,6 +31,8 @@ public:
    void setGrid(bool on);
    /// Parts or struts in the place of cells, until the design changes or moves; null draws cells.
    void showSurface(std::shared_ptr<const render::Surface> surface);
+   /// Meshes beside the cells; null shows none.
+   void showReferences(std::shared_ptr<const render::Surface> references);
    /// Null: at rest.
    void showFrame(std::shared_ptr<const render::Moment> frame, bool byDisplacement);
    /// Cells to outline until others are, or the design changes.

@@ -21,7 +21,7 @@ struct Renderer::Self
 {
    CellPass cells;
    OverlayPass overlays;
-   SurfacePass surface;
+   SurfacePass surface, references;
    Program background;
    VertexArray nothing;
    Batch boxes, grid, ghost, lines, screenFill, screenLines;
@@ -53,6 +53,8 @@ Status Renderer::start()
    if (Status status = m_self->overlays.start(); !status)
       return status;
    if (Status status = m_self->surface.start(); !status)
+      return status;
+   if (Status status = m_self->references.start(); !status)
       return status;
    return m_self->background.build("", kBackgroundVertex, kBackgroundFragment);
 }
@@ -97,6 +99,12 @@ void Renderer::setBoxes(std::span<const SolidBox> boxes)
 void Renderer::setSurface(const Surface &surface)
 {
    m_self->surface.setSurface(surface);
+   m_self->stale = true;
+}
+
+void Renderer::setReferences(const Surface &surface)
+{
+   m_self->references.setSurface(surface);
    m_self->stale = true;
 }
 
@@ -159,6 +167,7 @@ void Renderer::Self::drawScene(const Eigen::Matrix4f &transform)
    cells.draw(camera, transform, lineWidth);
    overlays.drawBoxes(boxes, transform, lineWidth);
    surface.draw(transformAbout(surface.anchor()), lineWidth);
+   references.drawTranslucent(transformAbout(references.anchor()), 0.35f);
    glEnable(GL_BLEND);
    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
    glDepthMask(GL_FALSE);

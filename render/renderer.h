@@ -43,6 +43,8 @@ public:
    void setBoxes(std::span<const SolidBox> boxes);
    /// Drawn beside cells and boxes; one without corners is none.
    void setSurface(const Surface &surface);
+   /// Drawn over the scene, translucent: what is designed against.
+   void setReferences(const Surface &surface);
    void setGrid(std::span<const Line> lines);
    void setBackground(Rgba low, Rgba high);
    void setOverlay(const Overlay &overlay);

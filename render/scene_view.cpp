@@ -90,6 +90,20 @@ void SceneView::setSurface(std::shared_ptr<const Surface> surface)
       m_bounds.extend(m_surface->bounds);
 }
 
+void SceneView::setReferences(std::shared_ptr<const Surface> references)
+{
+   m_references = std::move(references);
+   m_newReferences = true;
+}
+
+Bounds SceneView::bounds() const
+{
+   Bounds bounds = m_bounds;
+   if (m_references)
+      bounds.extend(m_references->bounds);
+   return bounds;
+}
+
 void SceneView::upload(Renderer &renderer)
 {
    if (m_newMesh) {
@@ -104,7 +118,9 @@ void SceneView::upload(Renderer &renderer)
       poses(renderer);
       colors(renderer);
    }
-   m_newMesh = m_newFrame = false;
+   if (m_newReferences)
+      renderer.setReferences(m_references ? *m_references : Surface());
+   m_newMesh = m_newFrame = m_newReferences = false;
 }
 
 void SceneView::poses(Renderer &renderer)
@@ -151,7 +167,7 @@ void SceneView::colors(Renderer &renderer)
 
 Bounds SceneView::reach() const
 {
-   Bounds bounds = m_bounds;
+   Bounds bounds = this->bounds();
    for (const Line &line : m_grid) {
       bounds.extend(line.a);
       bounds.extend(line.b);

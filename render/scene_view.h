@@ -35,10 +35,13 @@ public:
    /// Drawn in the place of cells and boxes until another design is set; null draws those again.
    void setSurface(std::shared_ptr<const Surface> surface);
    const std::shared_ptr<const Surface> &surface() const { return m_surface; }
+   /// Meshes beside the cells; they stay whatever design is set.
+   void setReferences(std::shared_ptr<const Surface> references);
    /// Hands over what changed since the last call; needs the renderer's context.
    void upload(Renderer &renderer);
 
-   const Bounds &bounds() const { return m_bounds; }
+   /// Of cells and meshes beside them.
+   Bounds bounds() const;
    /// Of content and base plane: what must not be clipped.
    Bounds reach() const;
    /// Centre of a cell as drawn now.
@@ -58,11 +61,11 @@ private:
    std::vector<SolidBox> m_boxes;
    std::vector<Line> m_grid;
    Bounds m_bounds;
-   std::shared_ptr<const Surface> m_surface;
+   std::shared_ptr<const Surface> m_surface, m_references;
    std::shared_ptr<const Moment> m_frame;
    std::vector<std::int64_t> m_sceneCell; // by slot, of the frame's scene
    bool m_byDisplacement = false, m_boxed = false;
-   bool m_newMesh = false, m_newFrame = false;
+   bool m_newMesh = false, m_newFrame = false, m_newReferences = false;
 };
 
 } // namespace diatom::render

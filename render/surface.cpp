@@ -110,4 +110,46 @@ Result<Surface> surfaceOf(const Hierarchy &hierarchy, const PartMaker *maker, co
    return surface;
 }
 
+Surface surfaceOf(const std::vector<TriangleMesh> &meshes)
+{
+   constexpr std::array<std::uint8_t, 3> kGrey{150, 160, 175};
+   Surface surface;
+   std::uint64_t triangles = 0;
+   std::size_t drawn = 0;
+   for (; drawn < meshes.size(); ++drawn) {
+      triangles += meshes[drawn].triangles.size();
+      if (triangles > kMostTriangles)
+         break;
+      const auto bounds = meshes[drawn].bounds();
+      surface.bounds.extend(bounds);
+   }
+   if (!surface.bounds.isEmpty())
+      surface.anchor = surface.bounds.center();
+   for (std::size_t m = 0; m < drawn; ++m) {
+      const TriangleMesh &mesh = meshes[m];
+      for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+         std::array<Vec3, 3> corners;
+         for (std::size_t k = 0; k < 3; ++k)
+            corners[k] = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][k])];
+         const Vec3 across = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+         const double size = across.norm();
+         if (!(size > 0))
+            continue;
+         const auto &piece = mesh.pieces[static_cast<std::size_t>(mesh.piece[t])];
+         const auto &rgb = piece.colored ? piece.color : kGrey;
+         const double light = shade(across / size) / 255;
+         for (const Vec3 &corner : corners) {
+            Surface::Corner out{};
+            for (std::size_t i = 0; i < 3; ++i) {
+               const auto axis = static_cast<Eigen::Index>(i);
+               out.position[i] = static_cast<float>(corner[axis] - surface.anchor[axis]);
+               out.color[i] = static_cast<float>(light * rgb[i]);
+            }
+            surface.corners.push_back(out);
+         }
+      }
+   }
+   return surface;
+}
+
 } // namespace diatom::render

@@ -4,6 +4,7 @@
 #include "core/job.h"
 #include "core/result.h"
 #include "io/geometry.h"
+#include "io/triangle_mesh.h"
 #include "render/camera.h"
 
 #include <vector>
@@ -28,5 +29,9 @@ struct Surface
 /// What makeGeometry() makes of the design, in the colours of its materials. Refuses more than can be drawn.
 Result<Surface> surfaceOf(const Hierarchy &hierarchy, const PartMaker *maker, const GeometryOptions &options,
                           const Job &job);
+
+/// Meshes of other programs, without lines: nothing tells their sharp edges. Those that would be too much to
+/// draw are left out from the first on.
+Surface surfaceOf(const std::vector<TriangleMesh> &meshes);
 
 } // namespace diatom::render

@@ -24,15 +24,29 @@ void SurfacePass::setSurface(const Surface &surface)
 
 void SurfacePass::draw(const Eigen::Matrix4f &transform, float lineWidth)
 {
+   glEnable(GL_CULL_FACE);
+   drawTriangles(transform, lineWidth);
+   glDisable(GL_CULL_FACE);
+}
+
+void SurfacePass::drawTranslucent(const Eigen::Matrix4f &transform, float opacity)
+{
+   glEnable(GL_BLEND);
+   glBlendColor(0, 0, 0, opacity);
+   glBlendFuncSeparate(GL_CONSTANT_ALPHA, GL_ONE_MINUS_CONSTANT_ALPHA, GL_ZERO, GL_ONE);
+   glDepthMask(GL_FALSE);
+   drawTriangles(transform, 0);
+}
+
+void SurfacePass::drawTriangles(const Eigen::Matrix4f &transform, float lineWidth)
+{
    if (m_count == 0)
       return;
    m_program.use();
    m_program.set("transform", transform);
    m_program.set("lineWidth", lineWidth);
    m_array.bind();
-   glEnable(GL_CULL_FACE);
    glDrawArrays(GL_TRIANGLES, 0, m_count);
-   glDisable(GL_CULL_FACE);
 }
 
 } // namespace diatom::render

@@ -14,8 +14,12 @@ public:
    const Vec3 &anchor() const { return m_anchor; }
    /// `transform` takes world metres about this pass's anchor to clip space.
    void draw(const Eigen::Matrix4f &transform, float lineWidth);
+   /// Both sides of each triangle, mixed with what is behind.
+   void drawTranslucent(const Eigen::Matrix4f &transform, float opacity);
 
 private:
+   void drawTriangles(const Eigen::Matrix4f &transform, float lineWidth);
+
    Program m_program;
    VertexArray m_array;
    Buffer m_corners;

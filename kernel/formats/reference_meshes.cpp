@@ -25,7 +25,7 @@ Result<LoadedReferences> loadReferenceMeshes(const Design &design, const std::fi
       }
       for (Vec3 &vertex : read->mesh.vertices)
          vertex += reference.position;
-      loaded.meshes.push_back({reference.name, std::move(read->mesh)});
+      loaded.meshes.push_back(std::move(read->mesh));
    }
    return loaded;
 }

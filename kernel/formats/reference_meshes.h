@@ -11,15 +11,9 @@
 
 namespace diatom {
 
-struct LoadedReference
-{
-   std::string name;
-   TriangleMesh mesh; // in place, m
-};
-
 struct LoadedReferences
 {
-   std::vector<LoadedReference> meshes;
+   std::vector<TriangleMesh> meshes; // in place, m
    /// One for each that is shown but cannot be read, with the remedy: the design itself is not at fault.
    std::vector<std::string> notes;
 };

@@ -151,7 +151,8 @@ Result<Finding> tryLibrary(const Manifest &manifest, const Job &job)
 {
    const pid_t parent = getpid();
    const auto outcome =
-       runInChild([&] { return getpid() == parent ? std::string() : trial(manifest); }, kSeconds, job);
+       runInChild([&](const ChildProgress &) { return getpid() == parent ? std::string() : trial(manifest); },
+                  kSeconds, "trying a plugin", job);
    if (outcome)
       return Finding{false, *outcome};
    switch (outcome.error().code) {

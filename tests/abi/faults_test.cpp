@@ -342,11 +342,11 @@ void FaultsTest::aCrashInACallIsRememberedByTheNextStart()
    const Design design;
    // The program, as a child so that it may crash: create works, motif does not.
    const auto crashed = runInChild(
-       [&] {
+       [&](const ChildProgress &) {
           std::signal(SIGSEGV, SIG_DFL); // not the handler of the test's framework
           return use(*catalogue(), design, "lattice", "crash", Job());
        },
-       60, Job());
+       60, "crashing", Job());
    QVERIFY2(!crashed.ok(), "it was meant to crash");
    const std::string said = verdict("test.false_answers");
    QVERIFY2(said.find("refused: test.false.lattice crashed Diatom in its function motif") !=

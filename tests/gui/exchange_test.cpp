@@ -12,6 +12,7 @@
 
 #include "gui/export_dialog.h"
 #include "gui/import_dialog.h"
+#include "gui/reference_menu.h"
 
 using namespace diatom;
 using namespace diatom::test;
@@ -88,6 +89,7 @@ private slots:
    void aMeshIsFilledWithCells();
    void aBadMeshSaysSo();
    void partsAndStrutsAreShownUntilTheNextEdit();
+   void aReferenceMeshIsShownHiddenAndRemoved();
 
 private:
    QString file(const char *name) { return m_dir.filePath(QString::fromUtf8(name)); }
@@ -310,6 +312,57 @@ void ExchangeTest::partsAndStrutsAreShownUntilTheNextEdit()
    studio.key(Qt::Key_P);
    QTRY_VERIFY2(studio.message().contains("makes parts for the lattice"), qPrintable(studio.message()));
    QVERIFY(!studio.view().scene().surface());
+}
+
+void ExchangeTest::aReferenceMeshIsShownHiddenAndRemoved()
+{
+   if (!canReadMeshes())
+      QSKIP("this build has no assimp");
+   QFile mesh(file("roof.obj")); // a triangle over the truss, 0.1 m wide
+   QVERIFY(mesh.open(QIODevice::WriteOnly));
+   mesh.write("v 0 0 60\nv 100 0 60\nv 0 100 60\nf 1 2 3\n");
+   mesh.close();
+   ExchangeStudio studio;
+   QVERIFY(studio.ready());
+   QVERIFY(studio.openSample("octahedral-truss"));
+   studio.leave();
+   QVERIFY(studio.settle());
+   const QImage without = studio.picture();
+   auto *menu = studio.window.findChild<gui::ReferenceMenu *>("menu.references");
+   QVERIFY(menu);
+   const auto read = [&] { return QTest::qWaitFor([&] { return !menu->busy(); }, 60000) && studio.settle(); };
+   menu->add(file("roof.obj").toStdString()); // what the file dialog gives
+   QVERIFY(read());
+   const auto &references = studio.window.session().design().referenceMeshes;
+   QCOMPARE(references.size(), std::size_t(1));
+   QCOMPARE(references[0].name, std::string("roof"));
+   QVERIFY(studio.picture() != without);
+   const QImage with = studio.picture();
+
+   const auto entry = [&](const QString &text) {
+      for (QAction *action : menu->actions())
+         if (action->text() == text)
+            return action;
+      return static_cast<QAction *>(nullptr);
+   };
+   QVERIFY(entry("roof") && entry("roof")->isChecked());
+   entry("roof")->trigger();
+   QVERIFY(read());
+   QVERIFY(studio.picture() == without);
+   studio.window.session().undo();
+   QVERIFY(read());
+   QVERIFY(studio.picture() == with);
+   QVERIFY(entry("Remove roof"));
+   entry("Remove roof")->trigger();
+   QVERIFY(read());
+   QVERIFY(studio.picture() == without);
+   QVERIFY(!entry("roof"));
+
+   // One that is gone is told, and stays in the design.
+   menu->add(file("gone.obj").toStdString());
+   QVERIFY(read());
+   QVERIFY2(studio.message().contains("gone.obj"), qPrintable(studio.message()));
+   QCOMPARE(studio.window.session().design().referenceMeshes.size(), std::size_t(1));
 }
 
 QTEST_MAIN(ExchangeTest)

@@ -105,7 +105,7 @@ private slots:
       DIATOM_VERIFY_OK(loaded);
       QCOMPARE(loaded->meshes.size(), std::size_t(2));
       // Rounding of one product and one sum.
-      const auto inches = loaded->meshes[0].mesh.bounds(), custom = loaded->meshes[1].mesh.bounds();
+      const auto inches = loaded->meshes[0].bounds(), custom = loaded->meshes[1].bounds();
       QVERIFY((inches.max() - Vec3(10.0254, 20.0508, 30.0762)).norm() <
               1e-6); // vertices come in single precision
       QVERIFY((inches.min() - Vec3(10, 20, 30)).norm() < 1e-6);
