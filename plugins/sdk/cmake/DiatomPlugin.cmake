@@ -118,7 +118,8 @@ function(diatom_add_golden_test name)
     return()
   endif()
   set(command ${DIATOM_PROGRAM} --plugins ${CMAKE_CURRENT_BINARY_DIR} --progress none ${golden_COMMAND})
-  add_test(NAME ${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} COMMAND ${CMAKE_COMMAND}
+  # By the project's name: ctest mixes up tests of one name where several plugins are built together.
+  add_test(NAME ${PROJECT_NAME}_${name} WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} COMMAND ${CMAKE_COMMAND}
     "-DCOMMAND=${command}" -DACTUAL=${CMAKE_CURRENT_BINARY_DIR}/${name}.actual
     -DEXPECTED=${CMAKE_CURRENT_SOURCE_DIR}/${golden_EXPECTED} -P ${DIATOM_PLUGIN_CMAKE_DIR}/DiatomGolden.cmake)
 endfunction()
@@ -133,12 +134,12 @@ function(diatom_add_plugin_test name)
   target_compile_options(${name} PRIVATE -ffp-contract=off)
   target_compile_definitions(${name} PRIVATE
     DIATOM_PLUGIN_METADATA="${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME}_metadata.h")
-  add_test(NAME ${name} COMMAND ${name})
+  add_test(NAME ${PROJECT_NAME}_${name} COMMAND ${name})
 endfunction()
 
 # A ctest that runs the conformance program on the project's plugin, where that program is installed.
 function(diatom_add_conformance_test)
   if(DIATOM_PLUGIN_CHECK_PROGRAM)
-    add_test(NAME conformance COMMAND ${DIATOM_PLUGIN_CHECK_PROGRAM} ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME})
+    add_test(NAME ${PROJECT_NAME}_conformance COMMAND ${DIATOM_PLUGIN_CHECK_PROGRAM} ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME})
   endif()
 endfunction()
