@@ -47,6 +47,8 @@ Status makePlugins(const Catalogue &catalogue, const fs::path &folder)
    if (!cube)
       return Error{ErrorCode::unsupported, "the cube lattice is not installed"};
    const std::string &id = cube->provided->id;
+   if (const Status folderMade = makeFolder(folder); !folderMade)
+      return folderMade;
    for (int i = 0; i < kPlugins; ++i) {
       const fs::path to = folder / fmt::format("plugin{}", i);
       std::error_code error;

@@ -14,7 +14,7 @@ namespace diatom {
 
 namespace {
 
-std::string quarantined(const Candidate &candidate, const Finding &finding)
+std::string quarantined(const Candidate &candidate, const TrialFinding &finding)
 {
    return fmt::format("{}; it is not used until its file changes or you run `diatom plugins retry {}`",
                       finding.text, candidate.manifest.id);
@@ -43,7 +43,7 @@ void rememberCrashes(const std::vector<Candidate> &candidates, Verdicts &verdict
 }
 
 /// What the trial of a library found, now or earlier.
-Result<Finding> findingOf(const Candidate &candidate, Verdicts &verdicts, const Job &job)
+Result<TrialFinding> findingOf(const Candidate &candidate, Verdicts &verdicts, const Job &job)
 {
    if (const auto known = verdicts.finding(candidate.library()))
       return *known;

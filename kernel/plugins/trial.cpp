@@ -147,21 +147,21 @@ std::string trial(const Manifest &manifest)
 
 } // namespace
 
-Result<Finding> tryLibrary(const Manifest &manifest, const Job &job)
+Result<TrialFinding> tryLibrary(const Manifest &manifest, const Job &job)
 {
    const pid_t parent = getpid();
    const auto outcome =
        runInChild([&](const ChildProgress &) { return getpid() == parent ? std::string() : trial(manifest); },
                   kSeconds, "trying a plugin", job);
    if (outcome)
-      return Finding{false, *outcome};
+      return TrialFinding{false, *outcome};
    switch (outcome.error().code) {
    case ErrorCode::cancelled:
       return outcome.error();
    case ErrorCode::timeLimit:
-      return Finding{true, fmt::format("it hung when it was tried ({:.0f} s)", kSeconds)};
+      return TrialFinding{true, fmt::format("it hung when it was tried ({:.0f} s)", kSeconds)};
    default:
-      return Finding{true, fmt::format("it crashed when it was tried: {}", outcome.error().message)};
+      return TrialFinding{true, fmt::format("it crashed when it was tried: {}", outcome.error().message)};
    }
 }
 

@@ -11,6 +11,6 @@ namespace diatom {
 /// Loads the library in a child process, makes and destroys what it provides with default values, and looks
 /// at what it leaves behind. A library that cannot be loaded is no finding: loading says why. Error only when
 /// cancelled.
-Result<Finding> tryLibrary(const Manifest &manifest, const Job &job);
+Result<TrialFinding> tryLibrary(const Manifest &manifest, const Job &job);
 
 } // namespace diatom

@@ -55,7 +55,7 @@ std::map<std::string, Verdicts::Entry> Verdicts::load()
          for (const auto &[path, one] : document.at("libraries").items()) {
             Entry entry{one.at("size"), one.at("time"), one.at("hash"), {}};
             if (one.contains("verdict"))
-               entry.finding = Finding{one.at("refused"), one.at("verdict")};
+               entry.finding = TrialFinding{one.at("refused"), one.at("verdict")};
             entries[path] = std::move(entry);
          }
    } catch (const json::exception &) { // a damaged cache is one that knows nothing
@@ -97,13 +97,13 @@ Result<std::string> Verdicts::hash(const fs::path &library)
    return Error{ErrorCode::unreadable, library.string() + ": it cannot be read; install the plugin again"};
 }
 
-std::optional<Finding> Verdicts::finding(const fs::path &library)
+std::optional<TrialFinding> Verdicts::finding(const fs::path &library)
 {
    const Entry *entry = current(library);
    return entry ? entry->finding : std::nullopt;
 }
 
-void Verdicts::remember(const fs::path &library, const Finding &finding)
+void Verdicts::remember(const fs::path &library, const TrialFinding &finding)
 {
    if (Entry *entry = current(library)) {
       entry->finding = finding;

@@ -13,7 +13,7 @@
 namespace diatom {
 
 /// How a library stood its trial.
-struct Finding
+struct TrialFinding
 {
    bool refused = false; // it is not loaded until its file changes or it is tried again
    std::string text;     // why, or what it did that it must not; "" = nothing
@@ -29,8 +29,8 @@ public:
    /// SHA-256 of the library; read from the file only when its size or time is not as remembered.
    Result<std::string> hash(const std::filesystem::path &library);
    /// Nothing when this very content has not been tried.
-   std::optional<Finding> finding(const std::filesystem::path &library);
-   void remember(const std::filesystem::path &library, const Finding &finding);
+   std::optional<TrialFinding> finding(const std::filesystem::path &library);
+   void remember(const std::filesystem::path &library, const TrialFinding &finding);
    void forget(const std::filesystem::path &library);
    /// Writes what has been learnt since, if anything.
    void save();
@@ -41,7 +41,7 @@ private:
       std::uint64_t size = 0;
       std::int64_t time = 0;
       std::string hash;
-      std::optional<Finding> finding;
+      std::optional<TrialFinding> finding;
    };
    /// The entry as the file is now; null when it cannot be read.
    Entry *current(const std::filesystem::path &library);
