@@ -147,9 +147,10 @@ void makeProject(const NewPlugin &wanted, Context &context)
    context.print({{"id", id}, {"folder", shown}, {"files", *files}});
    context.note(
        fmt::format("Next:\n  cd {}\n  cmake -B build && cmake --build build\n  ctest --test-dir build\n"
-                   "  cmake --install build     into your plugin folder; diatom plugins then lists it\n"
+                   "  cmake --install build     into your plugin folder\n"
+                   "  diatom plugins trust {}   lets it run; diatom plugins lists it\n"
                    "README.md says more, and plugin.json has the id, which you may want to change first.",
-                   shown));
+                   shown, id));
 }
 
 } // namespace

@@ -99,6 +99,8 @@ void PluginNewTest::initTestCase()
                             "CXXFLAGS", "CC", "CXX", "LDFLAGS"})
       qunsetenv(name);
    qputenv("XDG_DATA_HOME", path("data").toUtf8());
+   qputenv("XDG_CONFIG_HOME", path("config").toUtf8());
+   qputenv("XDG_CACHE_HOME", path("cache").toUtf8());
    qputenv("PATH", path("prefix/bin").toUtf8() + ":" + qgetenv("PATH")); // where find_package() looks as well
 }
 
@@ -130,6 +132,8 @@ void PluginNewTest::aProjectBuildsAndPassesItsTests()
    const Outcome tests = test::run("ctest", {"--test-dir", build, "--output-on-failure", "--no-tests=error"});
    QVERIFY2(tests.exit == 0, tests.out.constData());
    DIATOM_VERIFY_RAN(test::run("cmake", {"--install", build}));
+   DIATOM_VERIFY_RAN(
+       test::run(path("prefix/bin/diatom"), {"plugins", "trust", made.object()["id"].toString()}));
 }
 
 void PluginNewTest::theSecondCompilerBuildsThemAll()
