@@ -1,8 +1,8 @@
 // diatom info: what a file holds, counted on the hierarchy.
 #include "cli/commands.h"
+#include "document/missing_lattice.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include <memory>
 
@@ -65,15 +65,12 @@ nlohmann::ordered_json definitionsJson(const Context::Input &input)
 void showStored(Context &context, const Opened &opened)
 {
    const Model &model = opened.design.model;
-   std::uint64_t stored = model.root.cells.count();
-   for (const auto &[id, definition] : model.definitions)
-      stored += definition->body.cells.count();
    context.print({{"name", opened.design.name},
                   {"format", opened.format},
                   {"lattice", model.lattice.id},
                   {"lattice_installed", false},
                   {"pitch_m", model.lattice.pitch},
-                  {"stored_cells", stored},
+                  {"stored_cells", storedCells(model)},
                   {"composites", model.definitions.size()},
                   {"hash", opened.design.hash().text()}});
 }
@@ -83,12 +80,8 @@ void showInfo(Context &context, const std::string &file)
    auto opened = context.read(file);
    if (!opened)
       return;
-   const std::string &lattice = opened->design.model.lattice.id;
-   if (!context.catalogue()->offer(DIATOM_LATTICE_1, lattice)) {
-      context.note(fmt::format(
-          "{}: the lattice {} is not installed; the design opens and saves unchanged, and is shown "
-          "once it is (`diatom plugins` lists what there is)",
-          file, lattice));
+   if (const auto missing = missingLattice(opened->design, *context.catalogue()); !missing.empty()) {
+      context.note(missing);
       showStored(context, *opened);
       return;
    }

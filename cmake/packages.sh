@@ -2,7 +2,7 @@
 
 build_packages="build-essential cmake ninja-build ccache mold pkg-config
   qt6-base-dev libqt6opengl6-dev libeigen3-dev nlohmann-json3-dev libfmt-dev libcli11-dev libzstd-dev libzip-dev
-  libxxhash-dev libassimp-dev zlib1g-dev libpugixml-dev libhwy-dev libplplot-dev plplot-driver-cairo libpng-dev libepoxy-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
+  libxxhash-dev nettle-dev libassimp-dev zlib1g-dev libpugixml-dev libhwy-dev libplplot-dev plplot-driver-cairo libpng-dev libepoxy-dev libgl-dev libegl-dev libgl1-mesa-dri libegl1
   libegl-mesa0 fonts-dejavu-core"
 test_packages="xvfb xauth python3 clang-format-14 admesh lib3mf1 abigail-tools"
 

@@ -1,5 +1,6 @@
 #include "gui/session.h"
 
+#include "document/missing_lattice.h"
 #include "gui/default_design.h"
 
 #include <QStringList>
@@ -110,7 +111,8 @@ void Session::refresh()
       m_hierarchy = std::move(*hierarchy);
    } else {
       m_hierarchy.reset();
-      emit failed(QString::fromStdString(hierarchy.error().message));
+      const std::string missing = missingLattice(design(), *m_catalogue);
+      emit failed(QString::fromStdString(missing.empty() ? hierarchy.error().message : missing));
    }
    emit designChanged();
 }

@@ -29,6 +29,7 @@ private slots:
    void aMeshBecomesCells();
    void turnsTheLatticeDoesNotHaveAreRefused();
    void infoPrintsTheAgreedKeys();
+   void aMissingLatticeIsToldAndTheDesignKept();
    void standardInputIsAFileToo();
    void simulateReportsAndRecords();
    void aStepThatCannotBeStableIsRefused();
@@ -159,6 +160,27 @@ void CommandsTest::turnsTheLatticeDoesNotHaveAreRefused()
          QCOMPARE(refused.exit, 1);
          QVERIFY2(refused.err.contains("0 to 23"), refused.err.constData());
       }
+}
+
+void CommandsTest::aMissingLatticeIsToldAndTheDesignKept()
+{
+   const QByteArray text = R"({"diatom": 1, "name": "kept", "lattice": {"id": "org.nobody.lattice.quasi"},
+      "materials": [{"id": "a"}], "assembly": {"cells": [["a", [0, 0, 0], [3, 2, 1]]]}})";
+   const auto info = diatomRuns({"info", "-", "--json"}, text);
+   QVERIFY2(info.exit == 0, info.err.constData());
+   QVERIFY2(info.err.contains("org.nobody.lattice.quasi is not installed"), info.err.constData());
+   QCOMPARE(info.object()["stored_cells"].toInt(), 6);
+   QCOMPARE(info.object()["lattice_installed"], QJsonValue(false));
+   const QString once = file("once.diatom"), twice = file("twice.diatom");
+   QCOMPARE(diatomRuns({"convert", "-", once}, text).exit, 0);
+   QCOMPARE(diatomRuns({"convert", once, twice}).exit, 0);
+   const auto hash = [&](const QString &of) { return diatomRuns({"info", of, "--json"}).object()["hash"]; };
+   QCOMPARE(hash(once), info.object()["hash"]);
+   QCOMPARE(hash(twice), info.object()["hash"]);
+   // What needs the places of cells says what is missing.
+   const auto exported = diatomRuns({"export", once, file("none.stl")});
+   QVERIFY(exported.exit != 0);
+   QVERIFY2(exported.err.contains("org.nobody.lattice.quasi"), exported.err.constData());
 }
 
 void CommandsTest::infoPrintsTheAgreedKeys()

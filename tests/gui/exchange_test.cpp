@@ -90,6 +90,7 @@ private slots:
    void aBadMeshSaysSo();
    void partsAndStrutsAreShownUntilTheNextEdit();
    void aReferenceMeshIsShownHiddenAndRemoved();
+   void aDesignOfAMissingLatticeIsToldAndKept();
 
 private:
    QString file(const char *name) { return m_dir.filePath(QString::fromUtf8(name)); }
@@ -363,6 +364,30 @@ void ExchangeTest::aReferenceMeshIsShownHiddenAndRemoved()
    QVERIFY(read());
    QVERIFY2(studio.message().contains("gone.obj"), qPrintable(studio.message()));
    QCOMPARE(studio.window.session().design().referenceMeshes.size(), std::size_t(1));
+}
+
+void ExchangeTest::aDesignOfAMissingLatticeIsToldAndKept()
+{
+   QFile document(file("quasi.diatom"));
+   QVERIFY(document.open(QIODevice::WriteOnly));
+   document.write(R"({"diatom": 1, "name": "quasi", "lattice": {"id": "org.nobody.lattice.quasi"},
+      "materials": [{"id": "a"}], "assembly": {"cells": [["a", [0, 0, 0], [3, 2, 1]]]}})");
+   document.close();
+   ExchangeStudio studio;
+   QVERIFY(studio.ready());
+   studio.window.open(file("quasi.diatom").toStdString());
+   QTRY_VERIFY_WITH_TIMEOUT(!studio.window.busy() && studio.window.windowTitle().contains("quasi"), 20000);
+   QVERIFY2(studio.message().contains("org.nobody.lattice.quasi is not installed: the 6 stored cells"),
+            qPrintable(studio.message()));
+   const QString hash = studio.window.session().stateHash();
+   QVERIFY(studio.settle()); // nothing to draw, and nothing breaks
+   studio.view().setFocus();
+   studio.key(Qt::Key_P);
+   studio.key(Qt::Key_Space);
+   QVERIFY(studio.window.session().save(file("again.diatom").toStdString()));
+   studio.window.open(file("again.diatom").toStdString());
+   QTRY_VERIFY_WITH_TIMEOUT(!studio.window.busy() && studio.window.windowTitle().contains("again"), 20000);
+   QCOMPARE(studio.window.session().stateHash(), hash);
 }
 
 QTEST_MAIN(ExchangeTest)
