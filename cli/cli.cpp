@@ -131,7 +131,7 @@ std::shared_ptr<const Catalogue> Context::catalogue()
 {
    m_job->setThreads(threads);
    if (!m_catalogue)
-      m_catalogue = Catalogue::find(searchFolders());
+      m_catalogue = Catalogue::find(searchFolders(), false, isolate);
    return m_catalogue;
 }
 

@@ -43,6 +43,7 @@ public:
    int threads = 0;
    std::string progress = "auto";          // auto, line, json, none
    std::vector<std::string> pluginFolders; // searched before the default ones
+   bool isolate = false;                   // solvers run in a process of their own
 
    /// Reports on stderr as `progress` says; cancelled by Ctrl+C (a second one kills).
    Job &job() { return *m_job; }

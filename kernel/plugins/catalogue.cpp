@@ -4,6 +4,7 @@
 #include "plugins/admission.h"
 #include "plugins/c_values.h"
 #include "plugins/module.h"
+#include "plugins/worker_solver.h"
 
 #include <fmt/format.h>
 
@@ -128,6 +129,7 @@ struct Catalogue::Loader
       Values values;
    };
 
+   bool isolateSolvers = false;
    std::mutex mutex;
    std::map<std::string, Result<std::shared_ptr<const Module>>> modules; // by plugin id
 
@@ -146,12 +148,22 @@ struct Catalogue::Loader
       return modules.emplace(manifest.id, Module::load(manifest)).first->second;
    }
 
+   bool isolated(const Offer &offer) const
+   {
+      return isolateSolvers && offer.provided->interface == DIATOM_SOLVER_1;
+   }
+
    Result<Opened> open(const Offer &offer, const Values &given, const Job &job)
    {
       const std::string &id = offer.provided->id;
       auto values = completeValues(offer.provided->parameters, given);
       if (!values)
          return Error{values.error().code, fmt::format("{}: {}", id, values.error().message)};
+      if (isolated(offer)) {
+         if (const Status admitted = admit(*offer.candidate, job); !admitted)
+            return admitted.error();
+         return Opened{nullptr, workerSolver(*offer.manifest, id), *std::move(values)};
+      }
       auto loaded = module(*offer.candidate, job);
       if (!loaded)
          return loaded.error();
@@ -182,9 +194,11 @@ struct Catalogue::Loader
 Catalogue::Catalogue() : m_loader(std::make_unique<Loader>()) {}
 Catalogue::~Catalogue() = default;
 
-std::shared_ptr<const Catalogue> Catalogue::find(const std::vector<PluginFolder> &folders, bool tryUnknown)
+std::shared_ptr<const Catalogue> Catalogue::find(const std::vector<PluginFolder> &folders, bool tryUnknown,
+                                                 bool isolateSolvers)
 {
    std::shared_ptr<Catalogue> catalogue(new Catalogue);
+   catalogue->m_loader->isolateSolvers = isolateSolvers;
    std::set<fs::path> seen; // one folder may be reached by several search paths
    for (const PluginFolder &folder : folders)
       for (const fs::path &plugin : pluginFolders(folder.path)) {
@@ -252,6 +266,10 @@ Result<std::shared_ptr<const Instance>> Catalogue::createWith(std::string_view i
       return Error{ErrorCode::internal,
                    fmt::format("{} (create): it said it succeeded but made nothing", id)};
    const Offer &found = *offer(interface, id);
+   if (m_loader->isolated(found)) {
+      const void *table = workerSolver(*found.manifest, std::string(id));
+      return std::make_shared<const Instance>(nullptr, std::string(id), table, self, destroy(table));
+   }
    auto module = m_loader->module(*found.candidate, job); // loaded by the call above
    if (!module)
       return module.error();
@@ -277,7 +295,7 @@ Status Catalogue::callWith(
    Status done = guardedCall(name, function, job, [&](const diatom_call *hostCall) {
       return status = call(opened->table, hostCall, &request);
    });
-   if (status == DIATOM_EXCEPTION)
+   if (status == DIATOM_EXCEPTION && opened->module)
       opened->module->noteException();
    return done;
 }

@@ -49,9 +49,10 @@ class Catalogue
 public:
    /// Looks in `folders` in order; within one, at <folder>/*/plugin.json and <folder>/*/*/plugin.json. Same
    /// id twice: the higher version wins, then the earlier path; the loser is listed with the reason. Loads
-   /// nothing; with `tryUnknown`, libraries that were never tried are, each in a process of its own.
+   /// nothing; with `tryUnknown`, libraries that were never tried are, each in a process of its own. With
+   /// `isolateSolvers` every solver runs in a process of its own, and gives the same bits.
    static std::shared_ptr<const Catalogue> find(const std::vector<PluginFolder> &folders,
-                                                bool tryUnknown = false);
+                                                bool tryUnknown = false, bool isolateSolvers = false);
 
    const std::vector<Candidate> &candidates() const { return m_candidates; }
    /// Accepted things of one interface, ordered by id.

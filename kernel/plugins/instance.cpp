@@ -134,6 +134,8 @@ void warnOfChange(const std::string &who, const char *function, const std::strin
 
 } // namespace
 
+const Job &jobOf(const diatom_call *call) { return *host(call).job; }
+
 Status guardedCall(const std::string &who, const char *function, const Job &job,
                    const std::function<std::int32_t(const diatom_call *)> &call)
 {
@@ -180,7 +182,7 @@ Status Instance::call(const char *function, const Job &job,
    std::int32_t status = DIATOM_EXCEPTION; // what stays when an exception comes out
    Status done =
        guardedCall(m_id, function, job, [&](const diatom_call *host) { return status = call(host); });
-   if (status == DIATOM_EXCEPTION)
+   if (status == DIATOM_EXCEPTION && m_module)
       m_module->noteException();
    return done;
 }

@@ -21,8 +21,11 @@ class Module; // a loaded library; never unloaded
 Status guardedCall(const std::string &who, const char *function, const Job &job,
                    const std::function<std::int32_t(const diatom_call *)> &call);
 
+/// Of a call that guardedCall() made: for tables that the host itself implements.
+const Job &jobOf(const diatom_call *call);
+
 /// One created thing: module, table and self. Destroyed with the last owner. Thread rules are the table's
-/// own.
+/// own. A thing in another process has no module here.
 class Instance
 {
 public:

@@ -4,8 +4,13 @@
 #include <diatom/solver.hpp>
 
 #include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <limits>
 #include <string>
+#include <thread>
+#include <vector>
 
 namespace false_answers {
 
@@ -41,6 +46,14 @@ public:
    {
       if (m_fault == "throws")
          throw std::runtime_error("the wheel came off");
+      if (m_fault == "crash")
+         std::raise(SIGSEGV);
+      if (m_fault == "leave")
+         std::_Exit(0);
+      if (m_fault == "memory")
+         m_hoard.resize(std::size_t{64} << 30, 1);
+      while (m_fault == "hang")
+         std::this_thread::sleep_for(std::chrono::milliseconds(10));
       result.state = m_fault == "state" ? 99 : DIATOM_DONE;
       result.time = m_fault == "time" ? std::numeric_limits<double>::quiet_NaN() : request.until;
       result.bad_cell = result.bad_link = -1;
@@ -57,6 +70,7 @@ public:
 
 private:
    std::string m_fault;
+   std::vector<char> m_hoard;
    std::int64_t m_cells;
    std::array<diatom_output, 3> m_output{};
    diatom_outputs m_outputs{};
