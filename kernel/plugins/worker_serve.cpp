@@ -46,7 +46,7 @@ class CancelWatch
 {
 public:
    explicit CancelWatch(WorkerControl &control)
-       : m_control(control), m_thread([this](std::stop_token stop) { watch(stop); })
+       : m_control(control), m_thread([this](const std::stop_token &stop) { watch(stop); })
    {}
 
    void run(Job &job, const std::function<void()> &work)

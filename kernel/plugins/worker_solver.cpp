@@ -27,8 +27,6 @@
 #include <utility>
 #include <vector>
 
-extern char **environ;
-
 namespace diatom {
 
 namespace {
