@@ -1,6 +1,7 @@
 #include "core/child.h"
 
 #include "core/clock.h"
+#include "core/sanitizers.h"
 
 #include <fmt/format.h>
 
@@ -18,18 +19,6 @@
 namespace diatom {
 
 namespace {
-
-#if defined(__SANITIZE_THREAD__)
-constexpr bool kMayFork = false; // its runtime does not follow children of processes with threads
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-constexpr bool kMayFork = false;
-#else
-constexpr bool kMayFork = true;
-#endif
-#else
-constexpr bool kMayFork = true;
-#endif
 
 // What goes through the pipe: a byte 0 to 100 for each percent that is done, kResult, the bytes, kWhole.
 constexpr unsigned char kResult = 0xff;

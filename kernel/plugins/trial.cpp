@@ -1,6 +1,7 @@
 #include "plugins/trial.h"
 
 #include "core/child.h"
+#include "core/sanitizers.h"
 #include "plugins/c_values.h"
 #include "plugins/call_watch.h"
 #include "plugins/instance.h"
@@ -31,18 +32,6 @@ constexpr double kSeconds = 5; // loading takes milliseconds; a busy machine may
 constexpr rlim_t kMemory = rlim_t{2} << 30;
 constexpr std::array kFatal{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool kLimitMemory = false; // its shadow takes terabytes of address space
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-constexpr bool kLimitMemory = false;
-#else
-constexpr bool kLimitMemory = true;
-#endif
-#else
-constexpr bool kLimitMemory = true;
-#endif
-
 /// Faults end the child at once, what it prints is lost, and it cannot take the machine's memory.
 void isolate()
 {
@@ -53,7 +42,7 @@ void isolate()
       dup2(nowhere, stream);
    const rlimit noCore{0, 0};
    setrlimit(RLIMIT_CORE, &noCore);
-   if (!kLimitMemory)
+   if (!kMayLimitMemory)
       return;
    rlim_t pages = 0; // in use already
    std::ifstream("/proc/self/statm") >> pages;

@@ -1,6 +1,7 @@
 #include "plugins/worker_serve.h"
 
 #include "core/job.h"
+#include "core/sanitizers.h"
 #include "plugins/instance.h"
 #include "plugins/manifest.h"
 #include "plugins/module.h"
@@ -24,18 +25,6 @@
 namespace diatom {
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kMayLimitMemory = false; // sanitizers reserve more than any machine has
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kMayLimitMemory = false;
-#else
-constexpr bool kMayLimitMemory = true;
-#endif
-#else
-constexpr bool kMayLimitMemory = true;
-#endif
 
 constexpr double kOverEstimate = 4;                        // a solver may take so many times what it said
 constexpr double kLeastMemory = 256.0 * 1024 * 1024;       // bytes, whatever it said

@@ -10,8 +10,6 @@ namespace diatom {
 
 namespace {
 
-/// Cells looked at for evidence; a material that turns up later is named without a cell.
-
 /// Whether all cells have indices that differ in one coordinate only.
 bool inSingleFile(const Hierarchy &hierarchy)
 {
@@ -47,6 +45,7 @@ std::vector<Index> cellsWhere(const Look &look, const std::function<bool(Cell)> 
    look.hierarchy.visit(look.hierarchy.bounds(), [&](Index i, Cell cell) {
       if (wanted(cell))
          cells.push_back(i);
+      // A material that turns up later is named without a cell.
       return cells.size() < kEvidence && ++seen < kMostSearched;
    });
    std::sort(cells.begin(), cells.end());

@@ -3,6 +3,7 @@
 #include "assembly/plan.h"
 #include "core/child.h"
 #include "core/file.h"
+#include "core/sanitizers.h"
 #include "plugins/call_watch.h"
 #include "plugins/consent.h"
 #include "plugins/warnings.h"
@@ -18,28 +19,6 @@ using namespace diatom;
 namespace fs = std::filesystem;
 
 namespace {
-
-#if defined(__SANITIZE_THREAD__)
-constexpr bool kHasChildren = false; // core/child.h: no child is made under the thread sanitizer
-constexpr bool kLimitsMemory = true;
-#elif defined(__SANITIZE_ADDRESS__)
-constexpr bool kHasChildren = true;
-constexpr bool kLimitsMemory = false;
-#elif defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-constexpr bool kHasChildren = false;
-#else
-constexpr bool kHasChildren = true;
-#endif
-#if __has_feature(address_sanitizer)
-constexpr bool kLimitsMemory = false;
-#else
-constexpr bool kLimitsMemory = true;
-#endif
-#else
-constexpr bool kHasChildren = true;
-constexpr bool kLimitsMemory = true;
-#endif
 
 fs::path built(const char *name) { return test::binaryDir() / "tests/plugins/faulty" / name; }
 
@@ -257,13 +236,13 @@ void FaultsTest::onTrial_data()
 
 void FaultsTest::onTrial()
 {
-   if (!kHasChildren)
+   if (!kMayFork)
       QSKIP("no child process can be made under the thread sanitizer");
    QFETCH(QString, plugin);
    QFETCH(QString, thing);
    QFETCH(bool, refused);
    QFETCH(QString, expected);
-   if (plugin == "eats_memory" && !kLimitsMemory)
+   if (plugin == "eats_memory" && !kMayLimitMemory)
       QSKIP("memory is not limited under the address sanitizer");
    copy(plugin.toLatin1());
    const std::string id = "test." + plugin.toStdString();
@@ -283,7 +262,7 @@ void FaultsTest::onTrial()
 
 void FaultsTest::aRefusedLibraryIsTriedAgainWhenAsked()
 {
-   if (!kHasChildren)
+   if (!kMayFork)
       QSKIP("no child process can be made under the thread sanitizer");
    copy("crashes");
    // At first use, without a listing before.
@@ -303,7 +282,7 @@ void FaultsTest::aRefusedLibraryIsTriedAgainWhenAsked()
 
 void FaultsTest::aVerdictIsForTheFileAsItIs()
 {
-   if (!kHasChildren)
+   if (!kMayFork)
       QSKIP("no child process can be made under the thread sanitizer");
    const fs::path folder = copy("crashes");
    catalogue(true);
@@ -336,7 +315,7 @@ void FaultsTest::exceptionsPutItOffForTheSession()
 
 void FaultsTest::aCrashInACallIsRememberedByTheNextStart()
 {
-   if (!kHasChildren)
+   if (!kMayFork)
       QSKIP("no child process can be made under the thread sanitizer");
    copy("false_answers");
    const Design design;

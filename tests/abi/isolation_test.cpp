@@ -1,28 +1,14 @@
 // Solvers in a process of their own: the same bits as in this one, and faults that cost a message.
 #include "cli/program.h"
+#include "core/sanitizers.h"
 #include "plugins/shared_memory.h"
 #include "scene/simulation.h"
 #include "support/scenes.h"
-
-#include <chrono>
-#include <thread>
 
 using namespace diatom;
 namespace fs = std::filesystem;
 
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kLimitsMemory = false; // kernel/plugins/worker_serve.cpp
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kLimitsMemory = false;
-#else
-constexpr bool kLimitsMemory = true;
-#endif
-#else
-constexpr bool kLimitsMemory = true;
-#endif
 
 QByteArray textOf(const QString &path)
 {
@@ -156,7 +142,7 @@ private slots:
 
    void memoryIsLimitedByTheEstimate()
    {
-      if (!kLimitsMemory)
+      if (!kMayLimitMemory)
          QSKIP("sanitizers reserve more address space than any limit");
       const std::string said = FalseRun().advance("memory", Job());
       QVERIFY2(said.find("memory") != std::string::npos, said.c_str());
@@ -165,13 +151,13 @@ private slots:
    void whoIgnoresCancelIsEnded()
    {
       const FalseRun run;
-      Job job;
-      std::thread later([&] {
-         std::this_thread::sleep_for(std::chrono::milliseconds(500));
-         job.cancel();
+      Job *hanging = nullptr;
+      Job job([&](double fraction, std::string_view) {
+         if (fraction == 0.5) // what the solver tells before it hangs
+            hanging->cancel();
       });
+      hanging = &job;
       const std::string said = run.advance("hang", job);
-      later.join();
       QVERIFY2(said.find("did not stop within 10 s of being cancelled") != std::string::npos, said.c_str());
    }
 

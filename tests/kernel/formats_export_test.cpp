@@ -55,7 +55,7 @@ std::string written(const Case &one, const char *format)
 
 } // namespace
 
-class DocumentExportTest : public QObject
+class FormatsExportTest : public QObject
 {
    Q_OBJECT
 private slots:
@@ -68,7 +68,7 @@ private slots:
    void formatsAreToldByNameOrSuffix();
 };
 
-void DocumentExportTest::filesOfAmoebaComeBackAsTheyWere()
+void FormatsExportTest::filesOfAmoebaComeBackAsTheyWere()
 {
    DIATOM_NEEDS_SHARED();
    for (const char *name : {"BeamBending.json", "Bendy.json", "Gripper.json", "Locomotion.json"}) {
@@ -88,7 +88,7 @@ void DocumentExportTest::filesOfAmoebaComeBackAsTheyWere()
    }
 }
 
-void DocumentExportTest::theCapacitorComesBackWithItsComposites()
+void FormatsExportTest::theCapacitorComesBackWithItsComposites()
 {
    DIATOM_NEEDS_SHARED();
    const Case first = openFile(sharedDir() / "data" / "dmdesign" / "capacitor.json");
@@ -117,7 +117,7 @@ void DocumentExportTest::theCapacitorComesBackWithItsComposites()
    }
 }
 
-void DocumentExportTest::bricksOfEveryLengthComeBack()
+void FormatsExportTest::bricksOfEveryLengthComeBack()
 {
    const Case tower = openFile(samplesDir() / "capacitor-tower.diatom");
    QVERIFY(cellsOf(tower).size() > 100);
@@ -126,7 +126,7 @@ void DocumentExportTest::bricksOfEveryLengthComeBack()
             tower.opened.design.model.lattice.pitch);
 }
 
-void DocumentExportTest::everyLatticeOfDmdesignComesBack()
+void FormatsExportTest::everyLatticeOfDmdesignComesBack()
 {
    int lattices = 0;
    for (const Offer &offer : catalogue()->offers(DIATOM_LATTICE_1)) {
@@ -152,7 +152,7 @@ void DocumentExportTest::everyLatticeOfDmdesignComesBack()
    QCOMPARE(lattices, 12); // all that the program had
 }
 
-void DocumentExportTest::othersMaterialsBecomeAmoebas()
+void FormatsExportTest::othersMaterialsBecomeAmoebas()
 {
    Scene scene("org.diatom_cad.lattice.cube");
    Material source = scene.model.material(3);
@@ -177,7 +177,7 @@ void DocumentExportTest::othersMaterialsBecomeAmoebas()
    }));
 }
 
-void DocumentExportTest::whatAProgramDoesNotHaveIsRefused()
+void FormatsExportTest::whatAProgramDoesNotHaveIsRefused()
 {
    std::vector<std::string> notes;
    Scene kelvin("org.diatom_cad.lattice.kelvin");
@@ -197,7 +197,7 @@ void DocumentExportTest::whatAProgramDoesNotHaveIsRefused()
    QVERIFY(!writeAmoeba(two.opened.design, two.hierarchy(), notes, Job()));
 }
 
-void DocumentExportTest::formatsAreToldByNameOrSuffix()
+void FormatsExportTest::formatsAreToldByNameOrSuffix()
 {
    QCOMPARE(foreignFormat("", "a.vox")->name, "vox");
    QCOMPARE(foreignFormat("", "a.vxa")->name, "vxa");
@@ -207,5 +207,5 @@ void DocumentExportTest::formatsAreToldByNameOrSuffix()
    QVERIFY(!foreignFormat("word", "a.vox"));
 }
 
-QTEST_APPLESS_MAIN(DocumentExportTest)
+QTEST_APPLESS_MAIN(FormatsExportTest)
 #include "formats_export_test.moc"

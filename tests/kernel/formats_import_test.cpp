@@ -60,7 +60,7 @@ Result<Opened> amoeba(const std::string &assembly, const std::string &sim)
 
 } // namespace
 
-class formats_import_test : public QObject
+class FormatsImportTest : public QObject
 {
    Q_OBJECT
 
@@ -313,5 +313,5 @@ private slots:
    }
 };
 
-QTEST_APPLESS_MAIN(formats_import_test)
+QTEST_APPLESS_MAIN(FormatsImportTest)
 #include "formats_import_test.moc"

@@ -47,7 +47,7 @@ std::shared_ptr<const Lattice> cubes(double pitch)
 
 } // namespace
 
-class DocumentMeshTest : public QObject
+class FormatsMeshTest : public QObject
 {
    Q_OBJECT
 private slots:
@@ -81,13 +81,13 @@ private:
    QTemporaryDir m_dir;
 };
 
-void DocumentMeshTest::init()
+void FormatsMeshTest::init()
 {
    if (!canReadMeshes())
       QSKIP("this build has no assimp");
 }
 
-void DocumentMeshTest::millimetresAreTheCustomAndInchesCanBeTold()
+void FormatsMeshTest::millimetresAreTheCustomAndInchesCanBeTold()
 {
    const auto file = write("box.obj", objText(boxMesh({0, 0, 0}, {10, 4, 3})));
    const auto millimetres = open(file, 1e-3);
@@ -103,7 +103,7 @@ void DocumentMeshTest::millimetresAreTheCustomAndInchesCanBeTold()
    QCOMPARE(large->design.model.root.cells.count(), 960U);
 }
 
-void DocumentMeshTest::threeMfTellsItsUnitAndItsMaterials()
+void FormatsMeshTest::threeMfTellsItsUnitAndItsMaterials()
 {
    Scene scene("org.diatom_cad.lattice.cube");
    scene.model.root.cells.fill({{0, 0, 0}, {5, 2, 1}}, {1, 0, 0});
@@ -123,7 +123,7 @@ void DocumentMeshTest::threeMfTellsItsUnitAndItsMaterials()
    }
 }
 
-void DocumentMeshTest::itIsScaledToASize()
+void FormatsMeshTest::itIsScaledToASize()
 {
    MeshImport options;
    options.size = 0.02;
@@ -132,7 +132,7 @@ void DocumentMeshTest::itIsScaledToASize()
    QVERIFY(opened->design.model.root.cells.bounds() == (Box{{0, 0, 0}, {19, 7, 5}}));
 }
 
-void DocumentMeshTest::placeIsKeptOnlyWhenAsked()
+void FormatsMeshTest::placeIsKeptOnlyWhenAsked()
 {
    const auto file = write("far.obj", objText(boxMesh({99.5, -20.5, 7.5}, {109.5, -16.5, 10.5})));
    const auto moved = open(file, 1e-3);
@@ -145,7 +145,7 @@ void DocumentMeshTest::placeIsKeptOnlyWhenAsked()
    QVERIFY(kept->design.model.root.cells.bounds() == (Box{{100, -20, 8}, {109, -17, 10}}));
 }
 
-void DocumentMeshTest::piecesBecomeMaterialsWithTheirColours()
+void FormatsMeshTest::piecesBecomeMaterialsWithTheirColours()
 {
    write("two.mtl", "newmtl red rubber\nKd 1 0 0\nnewmtl core\nKd 0 0 1\n");
    TriangleMesh mesh;
@@ -170,7 +170,7 @@ void DocumentMeshTest::piecesBecomeMaterialsWithTheirColours()
 }
 
 /// The lower half of a bar is green, the upper red; each cell takes the colour that is nearest.
-void DocumentMeshTest::coloursOfVerticesBecomeMaterials()
+void FormatsMeshTest::coloursOfVerticesBecomeMaterials()
 {
    TriangleMesh mesh;
    addBox(mesh, {0, 0, 0}, {4, 4, 6});
@@ -195,7 +195,7 @@ void DocumentMeshTest::coloursOfVerticesBecomeMaterials()
    QCOMPARE(model.root.cells.at({1, 1, 11}).material, red);
 }
 
-void DocumentMeshTest::anotherMeshTellsAnotherMaterial()
+void FormatsMeshTest::anotherMeshTellsAnotherMaterial()
 {
    MeshImport options;
    options.material = "shell";
@@ -211,7 +211,7 @@ void DocumentMeshTest::anotherMeshTellsAnotherMaterial()
 }
 
 /// Rows of 10 cells in bricks of 4, 4 and 2; along y in even layers, along x in odd ones.
-void DocumentMeshTest::bricksAreAsLongAsUsual()
+void FormatsMeshTest::bricksAreAsLongAsUsual()
 {
    LatticeSpec spec;
    spec.id = "org.diatom_cad.lattice.gik";
@@ -233,7 +233,7 @@ void DocumentMeshTest::bricksAreAsLongAsUsual()
    }
 }
 
-void DocumentMeshTest::badFilesAreRefused_data()
+void FormatsMeshTest::badFilesAreRefused_data()
 {
    QTest::addColumn<QString>("name");
    QTest::addColumn<QString>("bytes");
@@ -257,7 +257,7 @@ void DocumentMeshTest::badFilesAreRefused_data()
                                   << "ply\nformat ascii 1.0\nelement vertex 100\nproperty float x\n";
 }
 
-void DocumentMeshTest::badFilesAreRefused()
+void FormatsMeshTest::badFilesAreRefused()
 {
    QFETCH(QString, name);
    QFETCH(QString, bytes);
@@ -269,7 +269,7 @@ void DocumentMeshTest::badFilesAreRefused()
    QCOMPARE(opened.error().code, ErrorCode::unreadable);
 }
 
-void DocumentMeshTest::aSolidSmallerThanACellIsRefusedWithItsSize()
+void FormatsMeshTest::aSolidSmallerThanACellIsRefusedWithItsSize()
 {
    const auto opened = open(write("tiny.obj", objText(sphereMesh({0, 0, 0}, 0.1, 1))), 1);
    QVERIFY(!opened);
@@ -277,7 +277,7 @@ void DocumentMeshTest::aSolidSmallerThanACellIsRefusedWithItsSize()
             opened.error().message.c_str());
 }
 
-void DocumentMeshTest::whatAMeshIsIsToldBeforehand()
+void FormatsMeshTest::whatAMeshIsIsToldBeforehand()
 {
    TriangleMesh mesh = boxMesh({5, 0, 0}, {15, 20, 30});
    const auto facts = lookAtMesh(write("facts.obj", objText(mesh)), Job());
@@ -304,7 +304,7 @@ void DocumentMeshTest::whatAMeshIsIsToldBeforehand()
 
 // A ball of 20 times the pitch: by its volume the count wanders by the lattice points near its surface, less
 // than 1 %; the terms of Steiner's formula that are left out are 0.4 %.
-void DocumentMeshTest::aboutHowManyCellsIsToldBeforehand()
+void FormatsMeshTest::aboutHowManyCellsIsToldBeforehand()
 {
    const auto file = write("ball.obj", objText(sphereMesh({0, 0, 0}, 20, 4)));
    const auto facts = lookAtMesh(file, Job());
@@ -328,5 +328,5 @@ void DocumentMeshTest::aboutHowManyCellsIsToldBeforehand()
    }
 }
 
-QTEST_APPLESS_MAIN(DocumentMeshTest)
+QTEST_APPLESS_MAIN(FormatsMeshTest)
 #include "formats_mesh_test.moc"

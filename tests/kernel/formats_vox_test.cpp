@@ -94,7 +94,7 @@ std::string shape(std::int32_t node, std::int32_t model)
 
 } // namespace
 
-class DocumentVoxTest : public QObject
+class FormatsVoxTest : public QObject
 {
    Q_OBJECT
 private slots:
@@ -108,7 +108,7 @@ private slots:
    void brokenFilesAreRefused();
 };
 
-void DocumentVoxTest::cellsAndColoursComeBack()
+void FormatsVoxTest::cellsAndColoursComeBack()
 {
    Scene scene(kCube);
    unsigned n = 0;
@@ -124,7 +124,7 @@ void DocumentVoxTest::cellsAndColoursComeBack()
    }));
 }
 
-void DocumentVoxTest::modelsAreSplitAt256()
+void FormatsVoxTest::modelsAreSplitAt256()
 {
    Scene scene(kCube);
    scene.model.root.cells.fill({{-300, -1, 0}, {299, 1, 2}}, {1, 0, 0});
@@ -138,7 +138,7 @@ void DocumentVoxTest::modelsAreSplitAt256()
    QVERIFY(cells.bounds() == (Box{{-300, -1, 0}, {299, 1, 2}}));
 }
 
-void DocumentVoxTest::numbersOfColoursAreKept()
+void FormatsVoxTest::numbersOfColoursAreKept()
 {
    const Opened first = opened(fileOf(bar()));
    QCOMPARE(first.design.model.root.cells.at({0, 0, 0}).material, first.design.model.material("color-7"));
@@ -150,7 +150,7 @@ void DocumentVoxTest::numbersOfColoursAreKept()
    QVERIFY(second.design.model.material("color-200") != 0);
 }
 
-void DocumentVoxTest::compositesAreWrittenAsTheirCells()
+void FormatsVoxTest::compositesAreWrittenAsTheirCells()
 {
    Scene scene(kCube);
    Definition definition;
@@ -171,7 +171,7 @@ void DocumentVoxTest::compositesAreWrittenAsTheirCells()
 }
 
 /// By hand: a quarter turn about z takes x to y and y to -x; the model's middle (1, 1, 0) goes to the shift.
-void DocumentVoxTest::modelsAreTurnedAndShifted()
+void FormatsVoxTest::modelsAreTurnedAndShifted()
 {
    // Row 0 is (0, -1, 0): column 1, negative; row 1 is (1, 0, 0): column 0.
    const int quarter = 1 | (0 << 2) | (1 << 4);
@@ -204,7 +204,7 @@ void DocumentVoxTest::modelsAreTurnedAndShifted()
 }
 
 /// The program's own list: number 1 is white, 7 the second of the second row of blues, 255 the darkest grey.
-void DocumentVoxTest::filesWithoutAPaletteHaveTheUsualColours()
+void FormatsVoxTest::filesWithoutAPaletteHaveTheUsualColours()
 {
    const vox::Palette palette = vox::defaultPalette();
    QVERIFY(palette[1] == (std::array<std::uint8_t, 3>{0xff, 0xff, 0xff}));
@@ -216,7 +216,7 @@ void DocumentVoxTest::filesWithoutAPaletteHaveTheUsualColours()
    QVERIFY(palette[255] == (std::array<std::uint8_t, 3>{0x11, 0x11, 0x11}));
 }
 
-void DocumentVoxTest::otherLatticesAreRefused()
+void FormatsVoxTest::otherLatticesAreRefused()
 {
    Scene scene("org.diatom_cad.lattice.kelvin");
    scene.model.root.cells.set({0, 0, 0}, {1, 0, 0});
@@ -228,7 +228,7 @@ void DocumentVoxTest::otherLatticesAreRefused()
    QCOMPARE(bytes.error().code, ErrorCode::unsupported);
 }
 
-void DocumentVoxTest::brokenFilesAreRefused()
+void FormatsVoxTest::brokenFilesAreRefused()
 {
    const std::string whole = fileOf(bar() + transformation(0, 1, {{"_t", "100 0 0"}}) + shape(1, 0));
    const std::size_t all = opened(whole).design.model.root.cells.count();
@@ -255,5 +255,5 @@ void DocumentVoxTest::brokenFilesAreRefused()
    QVERIFY(!endless);
 }
 
-QTEST_APPLESS_MAIN(DocumentVoxTest)
+QTEST_APPLESS_MAIN(FormatsVoxTest)
 #include "formats_vox_test.moc"

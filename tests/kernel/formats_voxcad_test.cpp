@@ -46,7 +46,7 @@ Opened opened(const std::string &bytes)
 
 } // namespace
 
-class DocumentVoxcadTest : public QObject
+class FormatsVoxcadTest : public QObject
 {
    Q_OBJECT
 private slots:
@@ -60,7 +60,7 @@ private slots:
    void base64IsThatOfTheStandard();
 };
 
-void DocumentVoxcadTest::cellsMaterialsAndWorldAreRead()
+void FormatsVoxcadTest::cellsMaterialsAndWorldAreRead()
 {
    const Opened read = opened(bar());
    QCOMPARE(read.format, std::string("vxa"));
@@ -92,7 +92,7 @@ void DocumentVoxcadTest::cellsMaterialsAndWorldAreRead()
                        [](const std::string &note) { return note.find("CTE") != std::string::npos; }));
 }
 
-void DocumentVoxcadTest::packedLayersAreRead()
+void FormatsVoxcadTest::packedLayersAreRead()
 {
    const std::string first{1, 2, 2, 1, 1, 1}, second{0, 0, 0, 1, 0, 0};
    QVERIFY(opened(bar("BASE64", toBase64(first), toBase64(second))).design.model.root.cells ==
@@ -102,14 +102,14 @@ void DocumentVoxcadTest::packedLayersAreRead()
            opened(bar()).design.model.root.cells);
 }
 
-void DocumentVoxcadTest::whatIsWrittenComesBack_data()
+void FormatsVoxcadTest::whatIsWrittenComesBack_data()
 {
    QTest::addColumn<bool>("world");
    QTest::newRow("vxc") << false;
    QTest::newRow("vxa") << true;
 }
 
-void DocumentVoxcadTest::whatIsWrittenComesBack()
+void FormatsVoxcadTest::whatIsWrittenComesBack()
 {
    QFETCH(bool, world);
    Scene scene(kCube, 3e-3);
@@ -145,7 +145,7 @@ void DocumentVoxcadTest::whatIsWrittenComesBack()
    }
 }
 
-void DocumentVoxcadTest::faultsAreNamedWithTheirPlace_data()
+void FormatsVoxcadTest::faultsAreNamedWithTheirPlace_data()
 {
    QTest::addColumn<QString>("from");
    QTest::addColumn<QString>("to");
@@ -179,7 +179,7 @@ void DocumentVoxcadTest::faultsAreNamedWithTheirPlace_data()
                             << "no XML";
 }
 
-void DocumentVoxcadTest::faultsAreNamedWithTheirPlace()
+void FormatsVoxcadTest::faultsAreNamedWithTheirPlace()
 {
    QFETCH(QString, from);
    QFETCH(QString, to);
@@ -192,7 +192,7 @@ void DocumentVoxcadTest::faultsAreNamedWithTheirPlace()
    QVERIFY2(message.startsWith("bad.vxa: byte ") && message.contains(says), qPrintable(message));
 }
 
-void DocumentVoxcadTest::brokenFilesDoNoHarm()
+void FormatsVoxcadTest::brokenFilesDoNoHarm()
 {
    const std::string whole = bar();
    std::mt19937 random(2);
@@ -208,7 +208,7 @@ void DocumentVoxcadTest::brokenFilesDoNoHarm()
 }
 
 /// The vectors of RFC 4648, section 10.
-void DocumentVoxcadTest::base64IsThatOfTheStandard()
+void FormatsVoxcadTest::base64IsThatOfTheStandard()
 {
    const std::pair<const char *, const char *> vectors[] = {{"", ""},
                                                             {"f", "Zg=="},
@@ -225,5 +225,5 @@ void DocumentVoxcadTest::base64IsThatOfTheStandard()
       QVERIFY(!fromBase64(bad));
 }
 
-QTEST_APPLESS_MAIN(DocumentVoxcadTest)
+QTEST_APPLESS_MAIN(FormatsVoxcadTest)
 #include "formats_voxcad_test.moc"

@@ -42,7 +42,7 @@ public:
    }
 
    void apply(diatom::sdk::Call, std::span<const diatom_channel>) {}
-   std::int32_t step(diatom::sdk::Call, const diatom_step_request &request, diatom_step_result &result)
+   std::int32_t step(diatom::sdk::Call call, const diatom_step_request &request, diatom_step_result &result)
    {
       if (m_fault == "throws")
          throw std::runtime_error("the wheel came off");
@@ -52,6 +52,8 @@ public:
          std::_Exit(0);
       if (m_fault == "memory")
          m_hoard.resize(std::size_t{64} << 30, 1);
+      if (m_fault == "hang")
+         call.progress(0.5, "hanging"); // so that a test knows when
       while (m_fault == "hang")
          std::this_thread::sleep_for(std::chrono::milliseconds(10));
       result.state = m_fault == "state" ? 99 : DIATOM_DONE;
