@@ -117,9 +117,7 @@ Status draw(const Context::Input &input, const RenderOptions &options, std::pair
          return surface.error();
       request.surface = *std::move(surface);
    }
-   const auto folder =
-       options.file == "-" ? std::filesystem::path() : std::filesystem::path(options.file).parent_path();
-   const auto references = loadReferenceMeshes(input.opened.design, folder, context.job());
+   const auto references = loadReferenceMeshes(input.opened.design.referenceMeshes, context.job());
    if (!references)
       return references.error();
    for (const std::string &note : references->notes)

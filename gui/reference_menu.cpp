@@ -56,14 +56,6 @@ void ReferenceMenu::choose()
 
 void ReferenceMenu::add(const std::filesystem::path &file)
 {
-   std::error_code failed;
-   auto path = std::filesystem::absolute(file, failed);
-   if (!m_session->file().empty()) {
-      const auto near =
-          path.lexically_relative(std::filesystem::absolute(m_session->file(), failed).parent_path());
-      if (!near.empty() && *near.begin() != "..")
-         path = near;
-   }
    const auto &known = m_session->design().referenceMeshes;
    const std::string stem = file.stem().string();
    std::string name = stem;
@@ -71,17 +63,14 @@ void ReferenceMenu::add(const std::filesystem::path &file)
         std::any_of(known.begin(), known.end(), [&](const ReferenceMesh &one) { return one.name == name; });
         ++k)
       name = stem + " " + std::to_string(k);
-   m_session->run("reference-mesh", {{"name", name}, {"file", path.string()}});
+   m_session->run("reference-mesh", {{"name", name}, {"file", file.string()}});
 }
 
 void ReferenceMenu::designChanged()
 {
-   const Design &design = m_session->design();
-   const auto folder = m_session->file().parent_path();
-   if (design.referenceMeshes == m_drawn && (folder == m_folder || m_drawn.empty()))
+   if (m_session->design().referenceMeshes == m_drawn)
       return;
-   m_drawn = design.referenceMeshes;
-   m_folder = folder;
+   m_drawn = m_session->design().referenceMeshes;
    rebuild();
    struct Read
    {
@@ -90,8 +79,8 @@ void ReferenceMenu::designChanged()
    };
    auto read = std::make_shared<Read>();
    m_reading.start(
-       [read, design, folder](const Job &job) {
-          if (auto loaded = loadReferenceMeshes(design, folder, job)) {
+       [read, references = m_drawn](const Job &job) {
+          if (auto loaded = loadReferenceMeshes(references, job)) {
              read->loaded = *std::move(loaded);
              read->surface = std::make_shared<render::Surface>(render::surfaceOf(read->loaded.meshes));
           }

@@ -17,7 +17,7 @@ class ReferenceMenu : public QMenu
 public:
    ReferenceMenu(Session *session, Viewport *viewport, QWidget *parent);
 
-   /// Adds a mesh, by a name of its own; its path is kept from the document's folder where it lies below it.
+   /// Adds a mesh, by a name of its own.
    void add(const std::filesystem::path &file);
    /// Whether meshes are being read.
    bool busy() const { return m_reading.busy(); }
@@ -34,7 +34,6 @@ private:
    Viewport *m_viewport;
    Background m_reading;
    std::vector<ReferenceMesh> m_drawn; // what the viewport has, or will have
-   std::filesystem::path m_folder;     // from which those were read
 };
 
 } // namespace diatom::gui

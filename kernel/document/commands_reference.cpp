@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace diatom {
 
@@ -26,6 +27,10 @@ Result<std::string> referenceMesh(CommandContext &context, const nlohmann::json 
        known == referenceMeshes.end() ? nlohmann::json::object() : nlohmann::json(referenceMeshJson(*known));
    if (edit.ok())
       merged.merge_patch(edit.arguments().json());
+   std::error_code failed;
+   if (merged.contains("file") && merged["file"].is_string() && !merged["file"].get<std::string>().empty())
+      merged["file"] =
+          std::filesystem::absolute(merged["file"].get<std::string>(), failed).lexically_normal().string();
    ReadLog log{"reference-mesh", {}, nlohmann::json::object()};
    const ReferenceMesh item = edit.ok() ? readReferenceMesh(JsonPlace(merged, log)) : ReferenceMesh();
    if (log.error)
@@ -54,7 +59,7 @@ Result<std::string> removeReferenceMesh(CommandContext &context, const nlohmann:
 
 constexpr CommandParameter kReference[] = {
     {"name", "text", true, "of the mesh; a known name changes that one"},
-    {"file", "text", false, "the mesh: absolute, or from the document's folder"},
+    {"file", "text", false, "the mesh; a relative path is from the current folder"},
     {"unit_m", "number", false, "metres per number in it; 0 = as the file or its format says"},
     {"position_m", "list", false, "where its origin lies"},
     {"shown", "boolean", false, "whether it is drawn"},

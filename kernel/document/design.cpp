@@ -3,6 +3,8 @@
 #include "document/format.h"
 #include "document/json_text.h"
 
+#include <filesystem>
+
 namespace diatom {
 
 Hash Design::hash() const
@@ -18,8 +20,11 @@ Hash Design::hash() const
    hasher.add(std::string_view(jsonLine(valuesJson(assembly.partsValues))));
    hasher.add(std::string_view(assembly.machine));
    hasher.add(std::string_view(jsonLine(valuesJson(assembly.machineValues))));
-   for (const ReferenceMesh &reference : referenceMeshes)
+   for (ReferenceMesh reference : referenceMeshes) {
+      // Where its file lies is no part of what the design is.
+      reference.file = std::filesystem::path(reference.file).filename().string();
       hasher.add(std::string_view(jsonLine(referenceMeshJson(reference))));
+   }
    hasher.add(std::string_view(jsonLine(unknown)));
    return hasher.finish();
 }

@@ -10,7 +10,7 @@ namespace diatom {
 struct ReferenceMesh
 {
    std::string name; // one of each in a design
-   std::string file; // absolute, or from the document's folder
+   std::string file; // whole path; in documents from their own folder where it lies below that
    double unit = 0;  // metres per number in the file; 0 = what the file or its format says, or millimetres
    Vec3 position = Vec3::Zero(); // of the file's origin, m
    bool shown = true;

@@ -3,6 +3,7 @@
 #include "core/file.h"
 #include "document/format.h"
 #include "document/json_text.h"
+#include "document/missing_lattice.h"
 #include "formats/importers.h"
 #include "formats/vox.h"
 #include "formats/voxcad.h"
@@ -110,6 +111,32 @@ bool beginsAsZip(const std::filesystem::path &file)
 
 } // namespace
 
+namespace {
+
+/// Documents name reference meshes from their own folder, designs by whole paths: so they can be saved
+/// elsewhere.
+void widenPaths(Design &design, const std::filesystem::path &file)
+{
+   std::error_code failed;
+   const auto folder = std::filesystem::absolute(file, failed).parent_path();
+   for (ReferenceMesh &reference : design.referenceMeshes)
+      reference.file = (folder / reference.file).lexically_normal().string();
+}
+
+Design withNearPaths(Design design, const std::filesystem::path &file)
+{
+   std::error_code failed;
+   const auto folder = std::filesystem::absolute(file, failed).parent_path();
+   for (ReferenceMesh &reference : design.referenceMeshes) {
+      const auto near = std::filesystem::path(reference.file).lexically_relative(folder);
+      if (!near.empty() && *near.begin() != "..")
+         reference.file = near.string();
+   }
+   return design;
+}
+
+} // namespace
+
 Result<Opened> openDesign(const std::filesystem::path &file, const Job &job)
 {
    if (isMeshFile(file))
@@ -122,7 +149,12 @@ Result<Opened> openDesign(const std::filesystem::path &file, const Job &job)
    auto bytes = readFile(file, text ? kMostText : kMostPacked);
    if (!bytes)
       return bytes.error();
-   return readDesign(*bytes, file == "-" ? "standard input" : file.string(), job);
+   if (file == "-")
+      return readDesign(*bytes, "standard input", job);
+   auto opened = readDesign(*bytes, file.string(), job);
+   if (opened)
+      widenPaths(opened->design, file);
+   return opened;
 }
 
 Result<Opened> readDesign(std::string_view bytes, const std::string &name, const Job &job)
@@ -153,13 +185,11 @@ Result<Opened> readDesign(std::string_view bytes, const std::string &name, const
 
 Status saveDesign(const Design &design, const std::filesystem::path &file, const Job &job)
 {
-   std::uint64_t stored = design.model.root.cells.count();
-   for (const auto &[number, definition] : design.model.definitions)
-      stored += definition->body.cells.count();
-   const bool many = stored > kMostReadableCells;
-   auto bytes = writeDesign(design, many, job);
+   const bool many = storedCells(design.model) > kMostReadableCells;
+   const Design written = withNearPaths(design, file);
+   auto bytes = writeDesign(written, many, job);
    if (bytes && !many && bytes->size() > kMostReadableText)
-      bytes = writeDesign(design, true, job);
+      bytes = writeDesign(written, true, job);
    if (!bytes)
       return Error{bytes.error().code, fmt::format("{}: {}", file.string(), bytes.error().message)};
    return writeFileAtomic(file, *bytes);

@@ -6,16 +6,14 @@
 
 namespace diatom {
 
-Result<LoadedReferences> loadReferenceMeshes(const Design &design, const std::filesystem::path &folder,
-                                             const Job &job)
+Result<LoadedReferences> loadReferenceMeshes(const std::vector<ReferenceMesh> &references, const Job &job)
 {
    LoadedReferences loaded;
-   for (const ReferenceMesh &reference : design.referenceMeshes) {
+   for (const ReferenceMesh &reference : references) {
       if (!reference.shown)
          continue;
-      const auto file = folder / reference.file; // an absolute path stays what it is
-      const double unit = reference.unit > 0 ? reference.unit : customaryUnit(file);
-      auto read = readMesh(file, unit, job);
+      const double unit = reference.unit > 0 ? reference.unit : customaryUnit(reference.file);
+      auto read = readMesh(reference.file, unit, job);
       if (!read) {
          if (read.error().code == ErrorCode::cancelled)
             return read.error();

@@ -2,10 +2,9 @@
 #pragma once
 
 #include "core/job.h"
-#include "document/design.h"
+#include "document/reference_mesh.h"
 #include "io/triangle_mesh.h"
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -18,8 +17,7 @@ struct LoadedReferences
    std::vector<std::string> notes;
 };
 
-/// Reads the meshes that are shown; `folder` is the document's. Errors: cancelled.
-Result<LoadedReferences> loadReferenceMeshes(const Design &design, const std::filesystem::path &folder,
-                                             const Job &job);
+/// Reads the meshes that are shown. Errors: cancelled.
+Result<LoadedReferences> loadReferenceMeshes(const std::vector<ReferenceMesh> &references, const Job &job);
 
 } // namespace diatom

@@ -39,7 +39,7 @@ private slots:
                                     {{"name", "hand"}, {"position_m", {1, 2, 3}}, {"shown", false}}, Job()));
       QCOMPARE(document.design().referenceMeshes.size(), std::size_t(1));
       const ReferenceMesh &hand = document.design().referenceMeshes.front();
-      QCOMPARE(hand.file, std::string("hand.obj")); // what is not given stays
+      QCOMPARE(hand.file, (fs::current_path() / "hand.obj").string()); // what is not given stays
       QVERIFY(hand.position == Vec3(1, 2, 3) && !hand.shown && hand.unit == 0);
       DIATOM_VERIFY_OK(document.run("remove-reference-mesh", {{"name", "hand"}}, Job()));
       QVERIFY(document.design().hash() == before);
@@ -89,6 +89,34 @@ private slots:
                            "rename one"));
    }
 
+   void theyAreFoundWhereverTheDocumentIsSaved()
+   {
+      const QTemporaryDir folder;
+      const fs::path root = folder.path().toStdString();
+      fs::create_directories(root / "designs/meshes");
+      fs::create_directories(root / "elsewhere");
+      Document document = cubes();
+      const std::string mesh = (root / "designs/meshes/hand.obj").string();
+      DIATOM_VERIFY_OK(document.run("reference-mesh", {{"name", "hand"}, {"file", mesh}}, Job()));
+      const auto inFile = [](const fs::path &file) {
+         const auto text = readFile(file);
+         return text ? json::parse(*text)["reference_meshes"][0]["file"].get<std::string>() : "unreadable";
+      };
+      const fs::path near = root / "designs/a.diatom", far = root / "elsewhere/a.diatom";
+      DIATOM_VERIFY_OK(saveDesign(document.design(), near, Job()));
+      QCOMPARE(inFile(near), std::string("meshes/hand.obj")); // the folder may be moved as a whole
+      const auto opened = openDesign(near, Job());
+      DIATOM_VERIFY_OK(opened);
+      QCOMPARE(opened->design.referenceMeshes[0].file, mesh);
+      DIATOM_VERIFY_OK(saveDesign(opened->design, far, Job()));
+      QCOMPARE(inFile(far), mesh);
+      fs::rename(root / "designs", root / "moved");
+      const auto moved = openDesign(root / "moved/a.diatom", Job());
+      DIATOM_VERIFY_OK(moved);
+      QCOMPARE(moved->design.referenceMeshes[0].file, (root / "moved/meshes/hand.obj").string());
+      QVERIFY(moved->design.hash() == document.design().hash()); // the same design at another place
+   }
+
    void theyAreReadInPlace()
    {
       if (!canReadMeshes())
@@ -96,12 +124,13 @@ private slots:
       const QTemporaryDir folder;
       const fs::path path = folder.path().toStdString();
       DIATOM_VERIFY_OK(writeFileAtomic(path / "corner.obj", kTriangle));
-      Design design;
-      design.referenceMeshes = {{"inches", "corner.obj", 0.0254, {10, 20, 30}, true},
-                                {"custom", (path / "corner.obj").string(), 0, {0, 0, 0}, true},
-                                {"hidden", "corner.obj", 0, {0, 0, 0}, false},
-                                {"gone", "gone.obj", 0, {0, 0, 0}, true}};
-      const auto loaded = loadReferenceMeshes(design, path, Job());
+      const std::string corner = (path / "corner.obj").string();
+      const std::vector<ReferenceMesh> references = {
+          {"inches", corner, 0.0254, {10, 20, 30}, true},
+          {"custom", corner, 0, {0, 0, 0}, true},
+          {"hidden", corner, 0, {0, 0, 0}, false},
+          {"gone", (path / "gone.obj").string(), 0, {0, 0, 0}, true}};
+      const auto loaded = loadReferenceMeshes(references, Job());
       DIATOM_VERIFY_OK(loaded);
       QCOMPARE(loaded->meshes.size(), std::size_t(2));
       // Rounding of one product and one sum.
