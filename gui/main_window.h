@@ -72,6 +72,8 @@ private:
    /// False, with a message, while other work is going on.
    bool startTask(const QString &name, std::function<void(const Job &)> work, std::function<void()> done);
    void showFailure(const Error &error);
+   /// What was read takes the place of the design; when that was edited since `agreed`, the user is asked.
+   void takeRead(Result<Opened> read, const std::filesystem::path &file, std::uint64_t agreed);
    /// Parts or struts, in the background.
    void showAs(GeometryOptions::What what);
    void togglePlay();

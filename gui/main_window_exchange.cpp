@@ -206,12 +206,7 @@ void MainWindow::fillMesh(const std::filesystem::path &file, const ImportRequest
        [result, file, request](const Job &job) {
           result->emplace(importMesh(file, request.mesh, *request.lattice, job));
        },
-       [this, result, file] {
-          if (result->value().ok())
-             m_session.take(std::move(**result).value(), file);
-          else
-             showFailure(result->value().error());
-       });
+       [this, result, file, agreed = m_session.revision()] { takeRead(*std::move(*result), file, agreed); });
 }
 
 void MainWindow::showAs(GeometryOptions::What what)

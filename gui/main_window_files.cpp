@@ -63,12 +63,15 @@ void MainWindow::open(const std::filesystem::path &file)
    startTask(
        tr("Opening %1").arg(QString::fromStdString(file.filename().string())),
        [result, file](const Job &job) { result->emplace(openDesign(file, job)); },
-       [this, result, file] {
-          if (result->value().ok())
-             m_session.take(std::move(**result).value(), file);
-          else
-             showFailure(result->value().error());
-       });
+       [this, result, file, agreed = m_session.revision()] { takeRead(*std::move(*result), file, agreed); });
+}
+
+void MainWindow::takeRead(Result<Opened> read, const std::filesystem::path &file, std::uint64_t agreed)
+{
+   if (!read)
+      showFailure(read.error());
+   else if (m_session.revision() == agreed || mayDiscard())
+      m_session.take(*std::move(read), file);
 }
 
 void MainWindow::chooseAndOpen()

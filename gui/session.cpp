@@ -106,6 +106,7 @@ void Session::replace(Design design)
 
 void Session::refresh()
 {
+   ++m_revision;
    auto hierarchy = m_document->hierarchy();
    if (hierarchy) {
       m_hierarchy = std::move(*hierarchy);

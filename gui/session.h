@@ -9,6 +9,7 @@
 #include <QObject>
 #include <QString>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 
@@ -34,6 +35,8 @@ public:
    bool canUndo() const { return m_document->canUndo(); }
    bool canRedo() const { return m_document->canRedo(); }
    QString stateHash() const;
+   /// Counts edits, undo and redo among them.
+   std::uint64_t revision() const { return m_revision; }
 
    /// 0 when the design has no materials.
    MaterialIndex material() const { return m_material; }
@@ -67,6 +70,7 @@ private:
    std::shared_ptr<const Hierarchy> m_hierarchy;
    std::filesystem::path m_file;
    MaterialIndex m_material = 0;
+   std::uint64_t m_revision = 0;
 };
 
 } // namespace diatom::gui

@@ -8,7 +8,9 @@
 #include <QComboBox>
 #include <QFile>
 #include <QLineEdit>
+#include <QMessageBox>
 #include <QPushButton>
+#include <QTimer>
 
 #include "gui/export_dialog.h"
 #include "gui/import_dialog.h"
@@ -88,6 +90,7 @@ private slots:
    void theDialogSaysWhatIsWrong();
    void aMeshIsFilledWithCells();
    void aBadMeshSaysSo();
+   void editsMadeWhileAFileIsReadAreNotLost();
    void partsAndStrutsAreShownUntilTheNextEdit();
    void aReferenceMeshIsShownHiddenAndRemoved();
    void aDesignOfAMissingLatticeIsToldAndKept();
@@ -388,6 +391,34 @@ void ExchangeTest::aDesignOfAMissingLatticeIsToldAndKept()
    studio.window.open(file("again.diatom").toStdString());
    QTRY_VERIFY_WITH_TIMEOUT(!studio.window.busy() && studio.window.windowTitle().contains("again"), 20000);
    QCOMPARE(studio.window.session().stateHash(), hash);
+}
+
+void ExchangeTest::editsMadeWhileAFileIsReadAreNotLost()
+{
+   ExchangeStudio studio;
+   QVERIFY(studio.ready());
+   const auto sample = test::samplesDir() / "gripper.diatom";
+   studio.window.open(sample); // read in a thread; its end comes through the event loop
+   QVERIFY(studio.window.session().run("set-name", {{"name", "edited meanwhile"}}));
+   const QString edited = studio.window.session().stateHash();
+   const auto answer = [&](QMessageBox::StandardButton button) {
+      int asked = 0;
+      QTimer look;
+      connect(&look, &QTimer::timeout, this, [&] {
+         if (auto *box = qobject_cast<QMessageBox *>(QApplication::activeModalWidget())) {
+            ++asked;
+            QTest::mouseClick(box->button(button), Qt::LeftButton);
+         }
+      });
+      look.start(20);
+      return QTest::qWaitFor([&] { return asked > 0 && !studio.window.busy(); }, 20000) && asked == 1;
+   };
+   QVERIFY(answer(QMessageBox::Cancel));
+   QCOMPARE(studio.window.session().stateHash(), edited);
+   studio.window.open(sample);
+   QVERIFY(studio.window.session().run("set-name", {{"name", "and again"}}));
+   QVERIFY(answer(QMessageBox::Discard));
+   QVERIFY(studio.window.windowTitle().contains("gripper"));
 }
 
 QTEST_MAIN(ExchangeTest)
