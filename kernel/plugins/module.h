@@ -7,6 +7,7 @@
 #include <diatom/abi/core.h>
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -20,6 +21,10 @@ public:
 
    /// The table of an interface, or null.
    const void *table(const char *interface) const { return m_record->get(interface); }
+
+   /// The minor of the interface that it was built with, and the least that it runs with.
+   std::uint32_t abiMinor() const { return m_record->abi_minor; }
+   std::uint32_t needsMinor() const { return m_record->needs_minor; }
 
    /// Counts exceptions that came out of its calls, and how many there were.
    void noteException() const { m_exceptions.fetch_add(1, std::memory_order_relaxed); }

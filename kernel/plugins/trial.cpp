@@ -6,6 +6,7 @@
 #include "plugins/call_watch.h"
 #include "plugins/instance.h"
 #include "plugins/module.h"
+#include "plugins/process_traces.h"
 #include "plugins/warnings.h"
 
 #include <diatom/abi/lattice.h>
@@ -19,23 +20,19 @@
 
 #include <array>
 #include <csignal>
-#include <filesystem>
 #include <fstream>
 
 namespace diatom {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kSeconds = 5; // loading takes milliseconds; a busy machine may take a hundred times that
 constexpr rlim_t kMemory = rlim_t{2} << 30;
-constexpr std::array kFatal{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 
 /// Faults end the child at once, what it prints is lost, and it cannot take the machine's memory.
 void isolate()
 {
-   for (const int signal : kFatal)
+   for (const int signal : kCrashSignals)
       std::signal(signal, SIG_DFL);
    const int nowhere = open("/dev/null", O_RDWR);
    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -50,41 +47,6 @@ void isolate()
    const rlimit memory{most, most};
    setrlimit(RLIMIT_AS, &memory);
 }
-
-std::int64_t entries(const char *folder)
-{
-   std::error_code error;
-   std::int64_t count = 0;
-   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-      ++count;
-   return count;
-}
-
-/// What a plugin may leave behind in a process and must not.
-struct Traces
-{
-   std::int64_t threads = entries("/proc/self/task"), descriptors = entries("/proc/self/fd");
-   std::array<bool, kFatal.size()> handled{};
-
-   Traces()
-   {
-      for (std::size_t i = 0; i < kFatal.size(); ++i) {
-         struct sigaction action = {};
-         sigaction(kFatal[i], nullptr, &action);
-         handled[i] = action.sa_handler != SIG_DFL;
-      }
-   }
-   void compare(const Traces &before, std::string &text) const
-   {
-      const auto add = [&](bool is, const char *what) {
-         if (is)
-            text += std::string(text.empty() ? "" : " and ") + what;
-      };
-      add(threads > before.threads, "leaves threads running");
-      add(descriptors > before.descriptors, "leaves files open");
-      add(handled != before.handled, "catches the signals of crashes");
-   }
-};
 
 /// Makes one thing with its default values and ends it. A refusal is no fault.
 template<typename Table>
@@ -114,7 +76,7 @@ std::string trial(const Manifest &manifest)
    setPluginWarnings([&](const std::string &sentence) { text += (text.empty() ? "" : "; ") + sentence; });
    Job job;
    job.setThreads(1); // a pool of threads does not survive the making of a child
-   const Traces before;
+   const ProcessTraces before;
    const auto module = Module::load(manifest);
    if (!module)
       return {};
@@ -127,9 +89,7 @@ std::string trial(const Manifest &manifest)
          makeOne<diatom_machine>(**module, provided, manifest, job);
    }
    setPluginWarnings({});
-   std::string left;
-   Traces().compare(before, left);
-   if (!left.empty())
+   if (const std::string left = ProcessTraces().since(before); !left.empty())
       text += fmt::format("{}{} {}, which a plugin must not do", text.empty() ? "" : "; ", manifest.id, left);
    return text;
 }

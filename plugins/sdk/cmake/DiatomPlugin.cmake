@@ -137,9 +137,19 @@ function(diatom_add_plugin_test name)
   add_test(NAME ${PROJECT_NAME}_${name} COMMAND ${name})
 endfunction()
 
-# A ctest that runs the conformance program on the project's plugin, where that program is installed.
+# diatom_add_conformance_test([DESIGNS FILE...]): a ctest that runs the conformance program on the project's plugin, where that
+# program is installed; designs are what the plugin is tried on beside what the program makes itself. Warnings pass.
 function(diatom_add_conformance_test)
-  if(DIATOM_PLUGIN_CHECK_PROGRAM)
-    add_test(NAME ${PROJECT_NAME}_conformance COMMAND ${DIATOM_PLUGIN_CHECK_PROGRAM} ${CMAKE_CURRENT_BINARY_DIR}/${PROJECT_NAME})
+  cmake_parse_arguments(PARSE_ARGV 0 conformance "" "" "DESIGNS")
+  if(NOT DIATOM_PLUGIN_CHECK_PROGRAM)
+    message(STATUS "diatom-plugin-check was not found: the test conformance is left out (-DDIATOM_PLUGIN_CHECK_PROGRAM=...)")
+    return()
   endif()
+  set(designs "")
+  foreach(file IN LISTS conformance_DESIGNS)
+    list(APPEND designs --design ${CMAKE_CURRENT_SOURCE_DIR}/${file})
+  endforeach()
+  add_test(NAME ${PROJECT_NAME}_conformance
+    COMMAND ${DIATOM_PLUGIN_CHECK_PROGRAM} $<TARGET_FILE_DIR:${PROJECT_NAME}> ${designs})
+  set_tests_properties(${PROJECT_NAME}_conformance PROPERTIES PASS_REGULAR_EXPRESSION ", 0 failed")
 endfunction()
