@@ -301,7 +301,7 @@ private:
 } // namespace
 
 Result<std::unique_ptr<const Thing>> makeLatticeThing(const Subject &subject, const Values &values,
-                                                      const Job &job)
+                                                      const Job &job, Look look)
 {
    auto instance =
        subject.catalogue->create<diatom_lattice>(DIATOM_LATTICE_1, subject.provided->id, values, job);
@@ -311,8 +311,9 @@ Result<std::unique_ptr<const Thing>> makeLatticeThing(const Subject &subject, co
    spec.id = subject.provided->id;
    spec.values = values;
    spec.pitch = 1;
-   if (const auto checked = Lattice::make(*subject.catalogue, spec, job); !checked)
-      return fault(checked.error());
+   if (look == Look::checked)
+      if (const auto checked = Lattice::make(*subject.catalogue, spec, job); !checked)
+         return fault(checked.error());
    return std::unique_ptr<const Thing>(std::make_unique<LatticeThing>(*std::move(instance)));
 }
 

@@ -2,6 +2,7 @@
 #include "plugin_check/checks.h"
 #include "plugin_check/thing.h"
 
+#include "assembly/motion.h"
 #include "assembly/plan.h"
 
 #include <fmt/format.h>
@@ -19,33 +20,54 @@ namespace {
 
 constexpr std::int64_t kShort = 200, kLong = 1'000'000, kPiece = 4096; // operations
 
-/// A program of random operations within the machine's ranges; owns what the record points to.
+/// Where targets of a program are: places that the machine itself names, or anywhere within its axes' ranges.
+enum class Targets { named, anywhere };
+
+/// Axis values of the places that the description names: home, the feeders and where the assembly stands.
+std::vector<std::vector<double>> namedTargets(const diatom_machine_description &machine)
+{
+   const std::vector<double> home(machine.axis_home, machine.axis_home + machine.axes);
+   const Motion motion(machine);
+   std::vector<std::vector<double>> targets{home};
+   const auto add = [&](const Vec3 &tool) {
+      const Vec3 axes = motion.axesAt(tool);
+      std::vector<double> target = home;
+      for (int k = 0; k < 3; ++k)
+         target[static_cast<std::size_t>(motion.axis(k))] = axes[k];
+      if (motion.outside(tool).empty())
+         targets.push_back(std::move(target));
+   };
+   for (std::int32_t f = 0; f < machine.feeders; ++f)
+      add(Eigen::Map<const Vec3>(machine.feeder_position + 3 * f));
+   add(Eigen::Map<const Vec3>(machine.origin));
+   return targets;
+}
+
+/// A program of random operations; owns what the record points to.
 class Program
 {
 public:
-   Program(const diatom_machine_description &machine, std::int64_t count, std::mt19937_64 random)
+   Program(const diatom_machine_description &machine, std::int64_t count, std::mt19937_64 random,
+           Targets targets = Targets::named)
        : m_axes(machine.axes)
    {
+      const auto named = namedTargets(machine);
       for (std::int64_t i = 0; i < count; ++i) {
          const auto op = static_cast<std::int32_t>(random() % (DIATOM_OP_PAUSE + 1));
          const bool moves = op == DIATOM_OP_RAPID || op == DIATOM_OP_FEED || op == DIATOM_OP_HOME;
          const bool grips = op == DIATOM_OP_PICK || op == DIATOM_OP_PLACE;
          m_op.push_back(op);
          m_moved.push_back(moves ? (1 << m_axes) - 1 : 0);
-         for (int a = 0; a < m_axes; ++a) {
-            // Numbers as plans have them: whole micrometres and microradians.
-            const double low = std::max(machine.axis_minimum[a], -1e3),
-                         high = std::min(machine.axis_maximum[a], 1e3);
-            const double at = std::uniform_real_distribution<double>(low, high)(random);
-            m_target.push_back(std::clamp(std::round(at * 1e6) / 1e6, low, high));
-         }
+         const std::vector<double> target =
+             targets == Targets::named ? named[random() % named.size()] : anywhere(machine, random);
+         m_target.insert(m_target.end(), target.begin(), target.end());
          m_feed.push_back(op == DIATOM_OP_FEED ? machine.feed : 0);
          m_seconds.push_back(grips ? machine.grip_seconds : op == DIATOM_OP_DWELL ? 0.25 : 0);
-         m_part.push_back(grips ? static_cast<std::int64_t>(m_parts) : -1);
+         m_part.push_back(grips ? m_parts : -1);
          m_note.push_back(grips || op == DIATOM_OP_NOTE || op == DIATOM_OP_PAUSE
                               ? "a part (of steel), 1/2 long"
                               : nullptr);
-         if (op == DIATOM_OP_PICK || op == DIATOM_OP_PLACE) {
+         if (grips) {
             m_feeder.push_back(machine.feeders > 0 ? static_cast<std::int32_t>(m_parts % machine.feeders)
                                                    : 0);
             m_index.insert(m_index.end(), {static_cast<std::int32_t>(m_parts), -1, 2});
@@ -80,6 +102,17 @@ public:
    std::int64_t count() const { return static_cast<std::int64_t>(m_op.size()); }
 
 private:
+   static std::vector<double> anywhere(const diatom_machine_description &machine, std::mt19937_64 &random)
+   {
+      constexpr double kFarthest = 1e3; // m; ranges may be without end
+      std::vector<double> target;
+      for (int a = 0; a < machine.axes; ++a)
+         target.push_back(
+             std::uniform_real_distribution<double>(std::max(machine.axis_minimum[a], -kFarthest),
+                                                    std::min(machine.axis_maximum[a], kFarthest))(random));
+      return target;
+   }
+
    std::int32_t m_axes;
    std::int64_t m_parts = 0;
    std::vector<std::int32_t> m_op, m_moved, m_feeder, m_index;
@@ -156,13 +189,32 @@ void checkMachinePrograms(const Subject &subject, Findings &findings)
          const auto text = post(*made->instance, program, Job()),
                     again = post(*made->instance, program, Job());
          const std::string label = fmt::format("with {}: a program of {} operations", choice.label, count);
-         if (!text)
+         if (!text && (choice.values.empty() || text.error().code == ErrorCode::internal))
             findings.fail(label + ": " + text.error().message);
+         else if (!text)
+            continue; // with these values the places lie out of its reach, and it says so
          else if (!again || *again != *text)
             findings.fail(label + " is other bytes the second time");
          else if (const std::string word = notANumber(*text); !word.empty())
             findings.fail(fmt::format("{} holds \"{}\" where a number belongs", label, word));
       }
+   }
+}
+
+/// Points that no arm may reach: told, never written down as something else.
+void checkMachineReach(const Subject &subject, Findings &findings)
+{
+   const auto made = makeMachine(subject, {}, Job());
+   if (!made)
+      return findings.fail(made.error().message);
+   auto random = subject.random("reach");
+   for (int i = 0; i < kShort; ++i) {
+      const Program program(made->machine->description(), 8, std::mt19937_64(random()), Targets::anywhere);
+      const auto text = post(*made->instance, program, Job());
+      if (!text && text.error().code == ErrorCode::internal)
+         return findings.fail("a program within the ranges of its axes: " + text.error().message);
+      if (text && !notANumber(*text).empty())
+         return findings.fail("a program within the ranges of its axes holds numbers that are none");
    }
 }
 
@@ -262,6 +314,8 @@ void addMachineChecks(std::vector<Check> &checks)
 {
    checks.push_back({"machine.programs", "programs, the empty one among them, are the same bytes each time",
                      DIATOM_MACHINE_1, checkMachinePrograms});
+   checks.push_back({"machine.reach", "what it cannot reach it refuses with a reason", DIATOM_MACHINE_1,
+                     checkMachineReach});
    checks.push_back({"machine.locale", "and in a country that writes decimal commas", DIATOM_MACHINE_1,
                      checkMachineLocale});
    checks.push_back(

@@ -38,8 +38,12 @@ void print(const Outcome &outcome)
 {
    fmt::print("{:<8} {:<24} {:>7.0f} ms  {}\n", wordOf(worst(outcome.findings)), outcome.check->name,
               outcome.seconds * 1e3, outcome.check->promise);
-   for (const Finding &finding : outcome.findings)
-      fmt::print("         {}: {}\n", wordOf(finding.severity), finding.text);
+   constexpr std::size_t kMostShown = 8;
+   const std::size_t shown = std::min(outcome.findings.size(), kMostShown);
+   for (std::size_t i = 0; i < shown; ++i)
+      fmt::print("         {}: {}\n", wordOf(outcome.findings[i].severity), outcome.findings[i].text);
+   if (shown < outcome.findings.size())
+      fmt::print("         and {} more (all of them with --json)\n", outcome.findings.size() - shown);
    std::fflush(stdout);
 }
 

@@ -225,13 +225,17 @@ void checkSolverBadNumbers(const Subject &subject, Findings &findings)
          const diatom_channel &channel = good.channel[k];
          if (channel.count * channel.stride == 0)
             continue;
-         std::vector<double> values(channel.values, channel.values + channel.count * channel.stride);
+         std::vector<double> one(channel.values, channel.values + channel.count * channel.stride);
+         std::vector<double> all(one.size(), none);
+         one[random() % one.size()] = none;
          std::vector<diatom_channel> channels(good.channel, good.channel + good.channels);
-         values[random() % values.size()] = none;
-         channels[size(k)].values = values.data();
          diatom_scene bad = good;
          bad.channel = channels.data();
-         tell(bad, fmt::format("a number of {} that is none", channel.name));
+         for (const std::vector<double> *values : {&one, &all}) {
+            channels[size(k)].values = values->data();
+            tell(bad,
+                 fmt::format("{} of {} that is none", values == &one ? "a number" : "numbers", channel.name));
+         }
       }
    }
 }

@@ -8,6 +8,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <thread>
@@ -17,6 +18,9 @@ namespace diatom::check {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kLeastCalls = 16;     // of a round that looks for growth
+constexpr double kRoundSeconds = 1; // after which such a round is long enough
 
 using Value = std::variant<double, std::string>;
 
@@ -133,9 +137,13 @@ std::optional<std::int64_t> growthPerCall(int calls, const std::function<void()>
       return std::nullopt;
    const auto round = [&] {
       const std::int64_t before = bytesInUse();
-      for (int i = 0; i < calls; ++i)
+      const auto begin = Clock::now();
+      int made = 0;
+      while (made < calls && (made < kLeastCalls || secondsSince(begin) < kRoundSeconds)) {
          call();
-      return (bytesInUse() - before) / calls;
+         ++made;
+      }
+      return (bytesInUse() - before) / made;
    };
    round(); // what is kept once
    return std::min(round(), round());

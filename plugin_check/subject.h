@@ -45,8 +45,8 @@ std::vector<Choice> parameterChoices(const Subject &subject, int random);
 /// Bytes allocated by this thread's allocator (mallinfo2).
 std::int64_t bytesInUse();
 
-/// Bytes that a call leaves allocated each time, over two rounds of `calls`; nothing where the build's
-/// sanitizers own the memory.
+/// Bytes that a call leaves allocated each time, over two rounds of `calls` or of a second; nothing where the
+/// build's sanitizers own the memory.
 std::optional<std::int64_t> growthPerCall(int calls, const std::function<void()> &call);
 
 inline constexpr double kCancelSeconds = 0.2; // that a plugin may take to see a cancel

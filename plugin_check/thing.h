@@ -17,13 +17,17 @@ public:
    virtual Result<Hash> answers(const Job &job) const = 0;
 };
 
+/// Whether the kernel looks at it as it would before use: what takes long for lattices.
+enum class Look { checked, unchecked };
+
 /// Makes the subject's thing. A refusal of the plugin's own keeps its code; what the kernel finds wrong is
 /// ErrorCode::internal.
-Result<std::unique_ptr<const Thing>> makeThing(const Subject &subject, const Values &values, const Job &job);
+Result<std::unique_ptr<const Thing>> makeThing(const Subject &subject, const Values &values, const Job &job,
+                                               Look look = Look::checked);
 
 /// Of the three, a file each.
 Result<std::unique_ptr<const Thing>> makeLatticeThing(const Subject &subject, const Values &values,
-                                                      const Job &job);
+                                                      const Job &job, Look look);
 Result<std::unique_ptr<const Thing>> makePartsThing(const Subject &subject, const Values &values,
                                                     const Job &job);
 Result<std::unique_ptr<const Thing>> makeMachineThing(const Subject &subject, const Values &values,
