@@ -131,7 +131,7 @@ std::shared_ptr<const Catalogue> Context::catalogue()
 {
    m_job->setThreads(threads);
    if (!m_catalogue)
-      m_catalogue = Catalogue::find(searchFolders(), false, isolate);
+      m_catalogue = Catalogue::find(searchFolders(), false, isolate ? Isolate::all : Isolate::outside);
    return m_catalogue;
 }
 
@@ -203,9 +203,11 @@ void Context::printTable(const nlohmann::ordered_json &rows) const
    }
    if (rows.empty())
       return;
-   std::vector<std::string> heading;
-   for (const auto &[key, member] : rows.front().items())
-      heading.push_back(key);
+   std::vector<std::string> heading; // rows may have columns of their own
+   for (const auto &row : rows)
+      for (const auto &[key, member] : row.items())
+         if (std::find(heading.begin(), heading.end(), key) == heading.end())
+            heading.push_back(key);
    std::vector<std::vector<std::string>> lines{heading};
    lines.reserve(rows.size() + 1);
    for (const auto &row : rows) {

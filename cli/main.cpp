@@ -29,7 +29,7 @@ int main(int argc, char **argv)
    app.add_option("--progress", context.progress, "Progress on standard error")
        ->check(CLI::IsMember({"auto", "line", "json", "none"}));
    app.add_flag("--isolate", context.isolate,
-                "Run solvers in a process of their own: a crash costs a message");
+                "Run all solvers, not only those from outside, in a process of their own");
    app.add_option("--plugins", context.pluginFolders, "Folder to look for plugins in, before the usual ones");
    app.footer(
        "Exit codes: 0 done, 1 failed, 2 usage, 3 input unreadable, 4 cannot write, 5 check found errors,\n"

@@ -64,6 +64,7 @@ constexpr ActionInfo kTable[] = {
      TR("Show which effects are simulated and what accuracy costs"), kToggle},
 
     {"help.keys", "help", TR("&Keys"), "F1", TR("List all keys")},
+    {"help.plugins", "help", TR("&Plugins…"), "", TR("Every plugin found, with its verdict")},
     {"help.about", "help", TR("&About Diatom"), "", TR("Version and licence")}};
 #undef TR
 

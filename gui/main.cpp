@@ -1,5 +1,7 @@
 // diatom-studio [FILE...] [--screenshot OUT.png] [--config DIR]
 #include "gui/main_window.h"
+#include "gui/plugin_consent.h"
+#include "plugins/warnings.h"
 
 #include <QApplication>
 #include <QCommandLineParser>
@@ -71,8 +73,20 @@ int main(int argc, char **argv)
                               ? parser.value(config)
                               : QStandardPaths::writableLocation(QStandardPaths::AppConfigLocation);
    QSettings settings(folder + QStringLiteral("/studio.ini"), QSettings::IniFormat);
-   const auto catalogue = Catalogue::find(defaultPluginFolders());
+   auto catalogue = findPlugins();
+   if (!parser.isSet(screenshot)) // which nobody watches
+      catalogue = askForConsent(catalogue, settings);
    std::vector<std::unique_ptr<MainWindow>> windows;
+   setPluginWarnings([&windows](const std::string &sentence) { // from any thread
+      std::fprintf(stderr, "%s\n", sentence.c_str());
+      QMetaObject::invokeMethod(
+          qApp,
+          [&windows, sentence] {
+             for (const auto &window : windows)
+                window->warn(QString::fromStdString(sentence));
+          },
+          Qt::QueuedConnection);
+   });
    QStringList files = parser.positionalArguments();
    if (files.isEmpty())
       files.append(QString());
@@ -84,5 +98,7 @@ int main(int argc, char **argv)
    }
    if (parser.isSet(screenshot))
       screenshotWhenReady(*windows.front(), parser.value(screenshot));
-   return QApplication::exec();
+   const int code = QApplication::exec();
+   setPluginWarnings({});
+   return code;
 }

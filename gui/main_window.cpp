@@ -1,5 +1,7 @@
 #include "gui/main_window.h"
 
+#include "gui/plugin_dialog.h"
+
 #include <QCloseEvent>
 #include <QDockWidget>
 #include <QLabel>
@@ -109,6 +111,11 @@ void MainWindow::connectActions()
          m_viewport->setFocus();
    });
    on("help.keys", [this] { showKeys(); });
+   on("help.plugins", [this] {
+      auto *dialog = new PluginDialog(m_session.catalogue(), this);
+      dialog->setAttribute(Qt::WA_DeleteOnClose);
+      dialog->open();
+   });
    on("help.about", [this] { showAbout(); });
 }
 

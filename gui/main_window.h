@@ -44,6 +44,9 @@ public:
    /// In the background; the window shows it when it is read. For a mesh it first asks of which cells.
    void open(const std::filesystem::path &file);
 
+   /// What a plugin did that it must not, or anything else worth a line over the view.
+   void warn(const QString &text) { m_messages->showMessage(text, false); }
+
    /// Folders with samples: beside an installed program and in the source tree.
    static std::vector<std::filesystem::path> sampleFolders();
 

@@ -30,7 +30,7 @@ std::shared_ptr<const Catalogue> isolatedCatalogue(const Subject &subject)
    std::vector<PluginFolder> folders{PluginFolder(subject.manifest.folder.parent_path(), Origin::installed)};
    for (PluginFolder &other : defaultPluginFolders())
       folders.push_back(std::move(other));
-   return Catalogue::find(folders, false, true);
+   return Catalogue::find(folders, false, Isolate::all);
 }
 
 } // namespace

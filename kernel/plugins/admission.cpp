@@ -63,8 +63,10 @@ void judge(Candidate &candidate, Verdicts &verdicts, const std::set<std::string>
       const auto hash = verdicts.hash(candidate.library());
       if (!hash)
          return refuse(hash.error().message);
-      if (!trusted.contains(*hash))
+      if (!trusted.contains(*hash)) {
+         candidate.needsConsent = true;
          return refuse(untrusted(candidate));
+      }
    }
    const Job job;
    auto finding = verdicts.finding(candidate.library());

@@ -1,5 +1,6 @@
 #include "plugins/catalogue.h"
 
+#include "core/sanitizers.h"
 #include "core/text.h"
 #include "plugins/admission.h"
 #include "plugins/c_values.h"
@@ -129,7 +130,7 @@ struct Catalogue::Loader
       Values values;
    };
 
-   bool isolateSolvers = false;
+   Isolate isolate = Isolate::none;
    std::mutex mutex;
    std::map<std::string, Result<std::shared_ptr<const Module>>> modules; // by plugin id
 
@@ -150,7 +151,10 @@ struct Catalogue::Loader
 
    bool isolated(const Offer &offer) const
    {
-      return isolateSolvers && offer.provided->interface == DIATOM_SOLVER_1;
+      if (offer.provided->interface != DIATOM_SOLVER_1)
+         return false;
+      const bool outside = offer.candidate->origin != Origin::installed;
+      return isolate == Isolate::all || (isolate == Isolate::outside && outside && kMayFork);
    }
 
    Result<Opened> open(const Offer &offer, const Values &given, const Job &job)
@@ -195,10 +199,10 @@ Catalogue::Catalogue() : m_loader(std::make_unique<Loader>()) {}
 Catalogue::~Catalogue() = default;
 
 std::shared_ptr<const Catalogue> Catalogue::find(const std::vector<PluginFolder> &folders, bool tryUnknown,
-                                                 bool isolateSolvers)
+                                                 Isolate isolate)
 {
    std::shared_ptr<Catalogue> catalogue(new Catalogue);
-   catalogue->m_loader->isolateSolvers = isolateSolvers;
+   catalogue->m_loader->isolate = isolate;
    std::set<fs::path> seen; // one folder may be reached by several search paths
    for (const PluginFolder &folder : folders)
       for (const fs::path &plugin : pluginFolders(folder.path)) {

@@ -28,7 +28,8 @@ struct Candidate
    Origin origin = Origin::installed;
    Manifest manifest; // empty when unreadable
    bool accepted = false;
-   std::string verdict; // "ok", or the reason in one sentence
+   bool needsConsent = false; // turned away only because the user has not said yet that it may run
+   std::string verdict;       // "ok", or the reason in one sentence
 
    std::filesystem::path library() const { return folder / manifest.library; }
 };
@@ -41,6 +42,14 @@ struct Offer
    const Candidate *candidate = nullptr;
 };
 
+/// Which solvers run in a process of their own, where their crash costs a message; they give the same bits
+/// there.
+enum class Isolate {
+   none,
+   outside, // those that were not installed with the program
+   all
+};
+
 /// Immutable after find(); modules are loaded at first use, under a lock. Any thread. A library from outside
 /// the installation is tried in a process of its own before it is first loaded, and a plugin of the user's
 /// folder runs only when the user trusts its library (plugins/consent.h).
@@ -49,10 +58,9 @@ class Catalogue
 public:
    /// Looks in `folders` in order; within one, at <folder>/*/plugin.json and <folder>/*/*/plugin.json. Same
    /// id twice: the higher version wins, then the earlier path; the loser is listed with the reason. Loads
-   /// nothing; with `tryUnknown`, libraries that were never tried are, each in a process of its own. With
-   /// `isolateSolvers` every solver runs in a process of its own, and gives the same bits.
+   /// nothing; with `tryUnknown`, libraries that were never tried are, each in a process of its own.
    static std::shared_ptr<const Catalogue> find(const std::vector<PluginFolder> &folders,
-                                                bool tryUnknown = false, bool isolateSolvers = false);
+                                                bool tryUnknown = false, Isolate isolate = Isolate::none);
 
    const std::vector<Candidate> &candidates() const { return m_candidates; }
    /// Accepted things of one interface, ordered by id.

@@ -19,8 +19,8 @@ QByteArray textOf(const QString &path)
 /// Two free cubes and a false solver that does `fault` in its step.
 struct FalseRun
 {
-   std::shared_ptr<const Catalogue> catalogue =
-       Catalogue::find({test::binaryDir() / "tests/plugins", test::binaryDir() / "plugins"}, false, true);
+   std::shared_ptr<const Catalogue> catalogue = Catalogue::find(
+       {test::binaryDir() / "tests/plugins", test::binaryDir() / "plugins"}, false, Isolate::all);
    test::Scene scene{"org.diatom_cad.lattice.cube"};
 
    Result<std::unique_ptr<Simulation>> start(const char *fault, const Job &job) const

@@ -19,7 +19,8 @@ namespace diatom::test {
 class Studio
 {
 public:
-   Studio() : window(catalogue(), nullptr)
+   explicit Studio(std::shared_ptr<const Catalogue> plugins = catalogue())
+       : window(std::move(plugins), nullptr)
    {
       QCursor::setPos(1590, 990); // clear of the window
       window.move(0, 0);
