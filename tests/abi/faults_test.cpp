@@ -167,6 +167,8 @@ void FaultsTest::falseAnswers_data()
    row("lattice", "", ""); // the same code without a fault is taken
    row("lattice", "not finite", "not finite");
    row("lattice", "counts", "sites");
+   row("lattice", "tiling", "joins features that do not meet");
+   row("lattice", "one way", "link 0 of site 0 is not mutual");
    row("lattice", "limits", "the longest -3");
    row("lattice", "throws", "the motif is lost");
    row("parts", "", "");

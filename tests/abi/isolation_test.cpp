@@ -148,6 +148,20 @@ private slots:
       QVERIFY2(said.find("memory") != std::string::npos, said.c_str());
    }
 
+   void whoLeaksMeetsTheSameLimit()
+   {
+      if (!kMayLimitMemory)
+         QSKIP("sanitizers reserve more address space than any limit");
+      const FalseRun run;
+      auto leaking = run.start("leaks", Job());
+      DIATOM_VERIFY_OK(leaking);
+      std::string said;
+      for (int step = 1; step <= 100 && said.empty(); ++step) // 3.2 GiB, ten times what it may take
+         if (const Status status = (*leaking)->advance(1e-2 * step, Job()); !status)
+            said = status.error().message;
+      QVERIFY2(said.find("memory") != std::string::npos, said.c_str());
+   }
+
    void whoIgnoresCancelIsEnded()
    {
       const FalseRun run;

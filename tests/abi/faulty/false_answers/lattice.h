@@ -21,7 +21,8 @@ struct FalseLattice
 {
    void *right = nullptr;
    std::string fault;
-   std::vector<double> offset{0, 0, 0};
+   std::vector<double> offset{0, 0, 0}, basis{0.5, 0, 0, 0, 1, 0, 0, 0, 1};
+   std::vector<std::int32_t> steps;
    std::vector<std::int32_t> step{1, 0, 0};
    diatom_motif record{};
 
@@ -60,6 +61,13 @@ struct FalseLattice
          record.offset = offset.data();
       } else if (fault == "counts") {
          record.sites = 7;
+      } else if (fault == "tiling") {
+         record.basis = basis.data();
+      } else if (fault == "one way") {
+         steps.assign(record.link_offset, record.link_offset + 3 * record.link_start[1]);
+         for (std::size_t k = 0; k < 3; ++k)
+            steps[k] *= 2;
+         record.link_offset = steps.data();
       } else if (fault == "limits") {
          record.supercell_step = step.data();
          record.supercell_longest = -3;

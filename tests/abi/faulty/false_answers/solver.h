@@ -52,6 +52,8 @@ public:
          std::_Exit(0);
       if (m_fault == "memory")
          m_hoard.resize(std::size_t{64} << 30, 1);
+      if (m_fault == "leaks")
+         m_lost = new char[std::size_t{32} << 20]; // each time, and nobody ever gives it back
       if (m_fault == "hang")
          call.progress(0.5, "hanging"); // so that a test knows when
       while (m_fault == "hang")
@@ -73,6 +75,7 @@ public:
 private:
    std::string m_fault;
    std::vector<char> m_hoard;
+   char *volatile m_lost = nullptr;
    std::int64_t m_cells;
    std::array<diatom_output, 3> m_output{};
    diatom_outputs m_outputs{};
