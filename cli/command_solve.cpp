@@ -40,22 +40,14 @@ Json wrenchJson(const Wrench &wrench)
    return {{"force_N", vectorJson(wrench.force)}, {"moment_N_m", vectorJson(wrench.moment)}};
 }
 
-/// Refuses what has no balance of its own before the solver is asked; what may still have one is noted.
-Status checkHeld(const Context::Input &input, Context &context)
+/// What may have no balance is told, what has none refused.
+Status noteLoose(const Context::Input &input, Context &context)
 {
-   const Setup &setup = input.opened.design.setup;
-   if (!findSetupProblems(*input.hierarchy, setup).empty() || input.hierarchy->cells() == 0)
-      return {}; // told, with the place, where the scene is built
-   const auto bodies = findBodies(*input.hierarchy, context.job());
-   if (!bodies)
-      return bodies.error();
-   for (const Problem &problem : findFloatingBodies(*input.hierarchy, *bodies, setup))
-      return Error{ErrorCode::invalid, "there is no static balance: " + problem.text};
-   for (const Problem &problem : findUnheldBodies(*input.hierarchy, *bodies, setup, context.job())) {
-      if (problem.kind == "not-held")
-         return Error{ErrorCode::invalid, "there is no static balance: " + problem.text};
+   const auto loose = checkHeld(*input.hierarchy, input.opened.design.setup, context.job());
+   if (!loose)
+      return loose.error();
+   for (const Problem &problem : *loose)
       context.note("warning: " + problem.text);
-   }
    return {};
 }
 
@@ -248,7 +240,7 @@ Status solveInput(const Context::Input &input, const SolveOptions &options, Cont
    if (!physics)
       return physics.error();
    const bool mechanics = std::find(physics->begin(), physics->end(), kMechanics) != physics->end();
-   if (Status held = mechanics ? checkHeld(input, context) : Status(); !held)
+   if (Status held = mechanics ? noteLoose(input, context) : Status(); !held)
       return held;
    const auto times = timesOf(options, options.at.value_or(endOfCurves(setup)));
    if (!times)

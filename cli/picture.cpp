@@ -51,7 +51,7 @@ Result<std::shared_ptr<const render::Moment>> momentOf(const Simulation &simulat
    moment->indices = std::make_shared<const std::vector<Index>>(simulation.scene().indices());
    moment->frame = *std::move(frame);
    auto magnitudes = render::displacementMagnitudes(moment->frame.position, rest.position);
-   moment->displacement = std::move(magnitudes.values);
+   moment->values = std::move(magnitudes.values);
    moment->highest = magnitudes.highest;
    return std::shared_ptr<const render::Moment>(std::move(moment));
 }

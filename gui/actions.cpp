@@ -58,8 +58,10 @@ constexpr ActionInfo kTable[] = {
     {"simulate.play", "simulate", TR("&Play"), "Space", TR("Start or pause the simulation")},
     {"simulate.reset", "simulate", TR("&Back to Start"), "Backspace",
      TR("Stop the simulation and return to rest")},
+    {"simulate.balance", "simulate", TR("Find Ba&lance"), "Ctrl+B",
+     TR("Show where the design comes to rest under its loads, or the steady state of another physics")},
     {"simulate.colour", "-simulate", TR("&Colour by Displacement"), "C",
-     TR("Show how far each cell has moved"), kToggle},
+     TR("Show how far each cell has moved, or what else the solver tells"), kToggle},
     {"simulate.panel", "-simulate", TR("&Simulation Panel"), "F8",
      TR("Show which effects are simulated and what accuracy costs"), kToggle},
 

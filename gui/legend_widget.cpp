@@ -46,7 +46,8 @@ void LegendWidget::paintEvent(QPaintEvent *)
    }
    painter.fillRect(bar, gradient);
    for (std::size_t i = 0; i < m_legend.ticks.size(); ++i) {
-      const double fraction = m_legend.high > 0 ? m_legend.ticks[i] / m_legend.high : 0;
+      const double range = m_legend.high - m_legend.low;
+      const double fraction = range > 0 ? (m_legend.ticks[i] - m_legend.low) / range : 0;
       const double y = bar.bottom() + 1 - fraction * bar.height();
       painter.drawLine(QPointF(bar.right() + 1, y), QPointF(bar.right() + 6, y));
       painter.drawText(QRectF(bar.right() + 10, y - 9, 80, 18), Qt::AlignLeft | Qt::AlignVCenter,

@@ -101,7 +101,11 @@ void MainWindow::connectActions()
    on("view.parts", [this] { showAs(GeometryOptions::What::parts); });
    on("view.struts", [this] { showAs(GeometryOptions::What::struts); });
    on("simulate.play", [this] { togglePlay(); });
-   on("simulate.reset", [this] { m_player.reset(); });
+   on("simulate.reset", [this] {
+      forgetBalance();
+      m_player.reset();
+   });
+   on("simulate.balance", [this] { showBalance(); });
    on("simulate.colour", [this] { showFrame(); });
    on("simulate.panel", [this] {
       m_panelDock->setVisible(m_actions["simulate.panel"]->isChecked());
@@ -160,24 +164,61 @@ void MainWindow::togglePlay()
 {
    if (m_player.playing())
       m_player.pause();
-   else if (m_session.hierarchy())
+   else if (m_session.hierarchy()) {
+      forgetBalance();
       m_player.play(m_session.catalogue(), m_session.design(), m_session.hierarchy());
+   }
+}
+
+void MainWindow::forgetBalance()
+{
+   if (!m_balance)
+      return;
+   m_balance = nullptr;
+   showFrame();
+   updateActions();
+}
+
+void MainWindow::showBalance()
+{
+   const auto hierarchy = m_session.hierarchy();
+   if (!hierarchy)
+      return;
+   m_player.reset();
+   auto result = std::make_shared<std::optional<Result<ShownBalance>>>();
+   startTask(
+       tr("Finding the balance"),
+       [result, hierarchy, catalogue = m_session.catalogue(), design = m_session.design()](const Job &job) {
+          result->emplace(findBalance(catalogue, design, *hierarchy, job));
+       },
+       [this, result, revision = m_session.revision()] {
+          if (!result->value().ok())
+             return showFailure(result->value().error());
+          if (m_session.revision() != revision || m_player.active())
+             return; // of a design before
+          m_balance = std::make_shared<const ShownBalance>(std::move(**result).value());
+          m_messages->showMessage(m_balance->told, false);
+          showFrame();
+          updateActions();
+       });
 }
 
 void MainWindow::showFrame()
 {
-   const auto frame = m_player.frame();
+   const auto frame = m_balance ? m_balance->moment : m_player.frame();
    const bool coloured = m_actions["simulate.colour"]->isChecked();
    m_viewport->showFrame(frame, coloured);
    m_legend->setVisible(frame && coloured);
    if (frame && coloured)
-      m_legend->setLegend(render::lengthLegend(tr("displacement").toStdString(), frame->highest));
+      m_legend->setLegend(m_balance ? m_balance->legend
+                                    : render::lengthLegend(tr("displacement").toStdString(), frame->highest));
    updateRun();
 }
 
 /// A changed design is at rest: the run was of the one before.
 void MainWindow::editStarted()
 {
+   forgetBalance();
    if (!m_player.active())
       return;
    m_player.reset();
@@ -196,7 +237,7 @@ void MainWindow::updateActions()
    m_actions["edit.eraseRegion"]->setEnabled(region);
    m_actions["edit.place"]->setEnabled(m_viewport->ghost().cell.has_value());
    m_actions["simulate.play"]->setText(m_player.playing() ? tr("&Pause") : tr("&Play"));
-   m_actions["simulate.reset"]->setEnabled(m_player.active());
+   m_actions["simulate.reset"]->setEnabled(m_player.active() || m_balance);
    setWindowTitle(QStringLiteral("%1[*] - Diatom").arg(m_session.title()));
    setWindowModified(m_session.modified());
 }
@@ -224,7 +265,7 @@ void MainWindow::updateRun()
 {
    const auto frame = m_player.frame();
    if (!frame) {
-      m_run->setText(m_player.active() ? tr("preparing") : tr("at rest"));
+      m_run->setText(m_balance ? tr("in balance") : m_player.active() ? tr("preparing") : tr("at rest"));
       return;
    }
    QString text = tr("t %1 s").arg(frame->frame.time, 0, 'f', 3);

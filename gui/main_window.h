@@ -3,6 +3,7 @@
 #pragma once
 
 #include "gui/actions.h"
+#include "gui/balance.h"
 #include "gui/hotbar.h"
 #include "gui/legend_widget.h"
 #include "gui/message_bar.h"
@@ -80,6 +81,8 @@ private:
    /// Parts or struts, in the background.
    void showAs(GeometryOptions::What what);
    void togglePlay();
+   void showBalance();
+   void forgetBalance();
    void showFrame();
    void editStarted();
    void showKeys();
@@ -95,6 +98,7 @@ private:
    QSettings *m_settings;
    Session m_session;
    SimulationPlayer m_player;
+   std::shared_ptr<const ShownBalance> m_balance; // shown while there is no run; null = none
    Actions m_actions;
    MessageBar *m_messages;
    Viewport *m_viewport;

@@ -76,7 +76,7 @@ Status SimulationPlayer::Run::publish(const Simulation &simulation, double facto
    auto magnitudes = render::displacementMagnitudes(made->frame.position, rest);
    highest = std::max(highest, magnitudes.highest);
    made->indices = indices;
-   made->displacement = std::move(magnitudes.values);
+   made->values = std::move(magnitudes.values);
    made->highest = highest;
    made->realTimeFactor = factor;
    const std::lock_guard lock(mutex);

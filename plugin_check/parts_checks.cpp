@@ -1,10 +1,9 @@
 // Whether cells become parts: all of them, once, the same in whatever order they come, with meshes that can
 // be made and that lie where the cells are.
 #include "plugin_check/checks.h"
+#include "plugin_check/parts_samples.h"
 #include "plugin_check/thing.h"
 
-#include "cells/hierarchy.h"
-#include "formats/files.h"
 #include "io/mesh_faults.h"
 #include "parts/decomposition.h"
 #include "parts/gathered_cells.h"
@@ -26,158 +25,9 @@ namespace diatom::check {
 
 namespace {
 
-constexpr double kPitch = 1e-3; // m
 constexpr double kProtrusion =
     1; // of a cell's radius, beyond which a mesh lies elsewhere: studs and hooks do not
 constexpr int kLargeBlock = 48; // cells along each edge of what is cancelled
-
-/// Cells to try it on.
-struct Sample
-{
-   std::string label;
-   std::shared_ptr<const Hierarchy> hierarchy;
-};
-
-class Sampler
-{
-public:
-   Sampler(const Subject &subject, const std::string &lattice) : m_subject(subject)
-   {
-      m_empty.lattice.id = lattice;
-      m_empty.lattice.pitch = kPitch;
-      for (const char *name : {"one", "two"}) {
-         Material material;
-         material.id = material.name = name;
-         (void)m_empty.setMaterial(material);
-      }
-      auto made = Lattice::make(*subject.catalogue, m_empty.lattice, Job());
-      if (made)
-         m_lattice = *made;
-      else
-         m_why = made.error().message;
-   }
-
-   /// Why there are no samples; empty when there are.
-   const std::string &why() const { return m_why; }
-
-   Sample block(Index size) const
-   {
-      Model model = m_empty;
-      fill(model.root, {}, size, [](Index) { return MaterialIndex{1}; });
-      return of(fmt::format("a block of {}x{}x{}", size.x, size.y, size.z), std::move(model));
-   }
-   /// Cells of two materials, each there with a chance.
-   Sample scattered(double chance, int number) const
-   {
-      auto random = m_subject.random(fmt::format("scattered {} {}", chance, number));
-      std::bernoulli_distribution there(chance), second(0.5);
-      Model model = m_empty;
-      fill(model.root, {-3, -3, -2}, {7, 7, 5},
-           [&](Index) { return there(random) ? MaterialIndex(second(random) ? 2 : 1) : MaterialIndex{0}; });
-      return of(fmt::format("cells at random ({:.0f} %, number {})", 100 * chance, number), std::move(model));
-   }
-   /// A composite in a composite, beside cells of the whole.
-   Sample nested() const
-   {
-      Model model = m_empty;
-      Definition inner{"inner", "inner", {}, {}}, outer{"outer", "outer", {}, {}};
-      fill(inner.body, {}, {2, 2, 2}, [](Index) { return MaterialIndex{1}; });
-      const auto innerId = model.setDefinition(inner);
-      if (innerId)
-         outer.body.instances.insert({*innerId, {0, 0, 0}, 0});
-      fill(outer.body, {0, 0, 2}, {2, 2, 2}, [](Index) { return MaterialIndex{2}; });
-      const auto outerId = model.setDefinition(outer);
-      const auto period = m_lattice->period();
-      const auto clear = [&](int axis) { // a shift that maps every site onto itself
-         const int p = period[static_cast<std::size_t>(axis)];
-         return (8 + p - 1) / p * p;
-      };
-      if (outerId) {
-         model.root.instances.insert({*outerId, {0, 0, 0}, 0});
-         model.root.instances.insert({*outerId, {clear(0), 0, 0}, 0});
-      }
-      fill(model.root, {0, clear(1), 0}, {3, 2, 1}, [](Index) { return MaterialIndex{1}; });
-      return of("composites within composites", std::move(model));
-   }
-
-   /// Runs of three cells that are placed as one, apart from each other.
-   Sample bricks() const
-   {
-      Model model = m_empty;
-      for (const Index corner : {Index{0, 0, 0}, Index{4, 0, 0}, Index{0, 4, 0}, Index{4, 4, 0},
-                                 Index{0, 0, 1}, Index{4, 0, 1}, Index{0, 4, 1}})
-      {
-         const Index step = m_lattice->supercellStep(m_lattice->site(corner));
-         const Index second = corner + step, third = second + step;
-         model.root.cells.set(corner, Cell{1, 0, Cell::kJoinsNext});
-         model.root.cells.set(second, Cell{1, 0, Cell::kJoinsPrevious | Cell::kJoinsNext});
-         model.root.cells.set(third, Cell{1, 0, Cell::kJoinsPrevious});
-      }
-      return of("bricks of three cells", std::move(model));
-   }
-
-   std::vector<Sample> all() const
-   {
-      std::vector<Sample> samples{block({1, 1, 1}), block({6, 5, 4}), nested()};
-      if (m_lattice->hasSupercells())
-         samples.push_back(bricks());
-      for (const double chance : {0.2, 0.6, 0.95})
-         for (int number = 0; number < 3; ++number)
-            samples.push_back(scattered(chance, number));
-      return samples;
-   }
-
-private:
-   template<typename MaterialAt>
-   static void fill(Body &body, Index corner, Index size, MaterialAt &&materialAt)
-   {
-      for (int x = 0; x < size.x; ++x)
-         for (int y = 0; y < size.y; ++y)
-            for (int z = 0; z < size.z; ++z) {
-               const Index cell = corner + Index{x, y, z};
-               if (const MaterialIndex material = materialAt(cell))
-                  body.cells.set(cell, Cell{material, 0, 0});
-            }
-   }
-   Sample of(std::string label, Model model) const
-   {
-      return {m_empty.lattice.id + ", " + std::move(label),
-              std::make_shared<Hierarchy>(m_lattice, std::move(model))};
-   }
-
-   const Subject &m_subject;
-   Model m_empty;
-   std::shared_ptr<const Lattice> m_lattice;
-   std::string m_why;
-};
-
-/// Samples of every lattice that the parts fit and that is installed; then the author's own designs.
-std::vector<Sample> samplesFor(const PartMaker &maker, const Subject &subject, Findings &findings)
-{
-   std::set<std::string> lattices;
-   for (const std::string &one : maker.lattices())
-      lattices.insert(one == "*" ? LatticeSpec().id : one);
-   std::vector<Sample> samples;
-   for (const std::string &lattice : lattices) {
-      const Sampler sampler(subject, lattice);
-      if (!sampler.why().empty()) {
-         findings.skip(fmt::format("not tried on {}: {}", lattice, sampler.why()));
-         continue;
-      }
-      for (Sample &sample : sampler.all())
-         samples.push_back(std::move(sample));
-   }
-   for (const auto &file : subject.designs) {
-      const auto opened = openDesign(file, Job());
-      const auto lattice = opened ? Lattice::make(*subject.catalogue, opened->design.model.lattice, Job())
-                                  : Result<std::shared_ptr<const Lattice>>(opened.error());
-      if (!lattice)
-         findings.skip(fmt::format("not tried on {}: {}", file.string(), lattice.error().message));
-      else if (lattices.contains(opened->design.model.lattice.id))
-         samples.push_back({file.string(), std::make_shared<Hierarchy>(*lattice, opened->design.model)});
-   }
-   return samples;
-}
 
 std::shared_ptr<const PartMaker> makeMaker(const Subject &subject, const Values &values, Findings &findings)
 {
@@ -384,7 +234,7 @@ void checkPartsMeshes(const Subject &subject, Findings &findings)
                     fmt::format("the mesh of {}, {} cells long, detail {}",
                                 maker.types()[static_cast<std::size_t>(part.type)].id, part.length, detail);
                 if (!known.contains(key)) {
-                   auto mesh = maker.mesh(part.type, part.length, detail, kPitch, Job());
+                   auto mesh = maker.mesh(part.type, part.length, detail, kSamplePitch, Job());
                    if (!mesh)
                       tell(name + ": " + mesh.error().message);
                    else if (const std::string fault = faultOf(*mesh); !fault.empty())
@@ -404,8 +254,7 @@ void checkPartsCancel(const Subject &subject, Findings &findings)
    const auto maker = makeMaker(subject, {}, findings);
    if (!maker)
       return;
-   const std::string &first = maker->lattices().front();
-   const Sampler sampler(subject, first == "*" ? LatticeSpec().id : first);
+   const Sampler sampler = firstSampler(*maker, subject);
    if (!sampler.why().empty())
       return findings.skip(sampler.why());
    const Sample sample = sampler.block({kLargeBlock, kLargeBlock, kLargeBlock});
@@ -460,7 +309,7 @@ public:
       }
       for (const auto &[type, length] : met)
          for (int detail = 0; detail < m_maker->details(); ++detail) {
-            const auto mesh = m_maker->mesh(type, length, detail, kPitch, job);
+            const auto mesh = m_maker->mesh(type, length, detail, kSamplePitch, job);
             if (!mesh)
                return mesh.error();
             hasher.bytes(mesh->vertices.data(), mesh->vertices.size() * sizeof(Vec3));
@@ -493,8 +342,7 @@ Result<std::unique_ptr<const Thing>> makePartsThing(const Subject &subject, cons
    if (!maker)
       return maker.error();
    std::vector<Sample> samples;
-   const std::string &first = (*maker)->lattices().front();
-   const Sampler sampler(subject, first == "*" ? LatticeSpec().id : first);
+   const Sampler sampler = firstSampler(**maker, subject);
    if (sampler.why().empty())
       samples = {sampler.block({3, 3, 2}), sampler.nested()};
    return std::unique_ptr<const Thing>(std::make_unique<PartsThing>(*std::move(maker), std::move(samples)));

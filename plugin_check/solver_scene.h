@@ -55,4 +55,17 @@ struct RunOptions
 /// Runs the trial for a moment (motion), or to its end.
 Result<Answers> runTrial(const Subject &subject, const Trial &trial, const RunOptions &options);
 
+/// So many steps, for as long as they take; and where what they did is written.
+inline diatom_step_request requestOf(std::int64_t steps)
+{
+   return {sizeof(diatom_step_request), 1e9, 0, steps, 0};
+}
+inline diatom_step_result emptyResult()
+{
+   return {sizeof(diatom_step_result), DIATOM_RUNNING, 0, 0, 0, -1, -1, 0, 0};
+}
+
+/// Answers of mechanics that are known beforehand: tension, free fall, an undamped swing.
+void checkSolverKnown(const Subject &subject, Findings &findings);
+
 } // namespace diatom::check

@@ -44,30 +44,36 @@ Rgba fieldColor(double fraction)
    return {byte(srgb[0]), byte(srgb[1]), byte(srgb[2]), 255};
 }
 
-Legend lengthLegend(std::string name, double highest)
+Legend fieldLegend(const std::string &name, const std::string &unit, double low, double high)
 {
    Legend legend;
-   const bool micro = highest > 0 && highest < 0.5e-3;
-   legend.title = std::move(name) + (micro ? " (um)" : " (mm)");
-   legend.high = highest * (micro ? 1e6 : 1e3);
-   if (!(legend.high > 0) || !std::isfinite(legend.high)) {
-      legend.high = 0;
-      legend.ticks = {0};
-      legend.texts = {"0"};
+   legend.title = unit.empty() ? name : name + " (" + unit + ")";
+   legend.low = legend.high = low;
+   if (!(high > low) || !std::isfinite(high - low)) {
+      legend.ticks = {low};
+      legend.texts = {numberText(low)};
       return legend;
    }
+   legend.high = high;
    // Steps 1, 2, 5 times a power of ten, at most six of them.
-   const double raw = legend.high / 5;
+   const double raw = (high - low) / 5;
    const int decade = static_cast<int>(std::floor(std::log10(raw)));
    const double power = std::pow(10.0, decade);
    const double mantissa = raw / power;
    const double step = (mantissa <= 1 ? 1 : mantissa <= 2 ? 2 : mantissa <= 5 ? 5 : 10) * power;
    const int decimals = std::max(0, step >= 9.99 * power ? -(decade + 1) : -decade);
-   for (int i = 0; i * step <= legend.high * (1 + 1e-9); ++i) {
+   for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * (high - low); ++i) {
       legend.ticks.push_back(i * step);
       legend.texts.push_back(fixedText(i * step, decimals));
    }
    return legend;
+}
+
+Legend lengthLegend(std::string name, double highest)
+{
+   const bool micro = highest > 0 && highest < 0.5e-3;
+   const double high = std::isfinite(highest) ? highest * (micro ? 1e6 : 1e3) : 0;
+   return fieldLegend(std::move(name), micro ? "um" : "mm", 0, high);
 }
 
 Magnitudes displacementMagnitudes(std::span<const double> position, std::span<const double> rest)

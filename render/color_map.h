@@ -29,6 +29,9 @@ struct Legend
    std::vector<std::string> texts; // of the ticks
 };
 
+/// A legend for values of any unit, with round ticks between the two; equal ones: one tick.
+Legend fieldLegend(const std::string &name, const std::string &unit, double low, double high);
+
 /// A legend for values in metres from 0 to `highest`; picks mm or um and round ticks. Zero range: one tick.
 Legend lengthLegend(std::string name, double highest);
 

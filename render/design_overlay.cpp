@@ -179,7 +179,8 @@ void addLegend(Overlay &overlay, const Camera &camera, const Legend &legend, Rgb
        {right, top, 0}, {right, top + height, 0}, {right + width, top + height, 0}, {right + width, top, 0}};
    addLoop(overlay.screenLines, frame, ink, 1);
    for (std::size_t i = 0; i < legend.ticks.size(); ++i) {
-      const double y = top + height * (legend.high > 0 ? 1 - legend.ticks[i] / legend.high : 1);
+      const double range = legend.high - legend.low;
+      const double y = top + height * (range > 0 ? 1 - (legend.ticks[i] - legend.low) / range : 1);
       overlay.screenLines.push_back({Vec3(right + width, y, 0), Vec3(right + width + 5, y, 0), ink, 1});
       addText(overlay.screenLines, legend.texts[i], {right + width + 9, y - size / 2}, size, ink, 1.3f);
    }

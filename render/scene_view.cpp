@@ -65,7 +65,7 @@ void SceneView::buildMesh(Covered covered)
       m_mesh = std::move(*mesh);
 }
 
-void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement)
+void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool coloured)
 {
    const bool whole = frame && m_mesh.cells.size() <= kWholeCellBudget;
    if (m_own && whole != m_whole)
@@ -76,7 +76,7 @@ void SceneView::setFrame(std::shared_ptr<const Moment> frame, bool byDisplacemen
          m_sceneCell.push_back(numberOf(*frame->indices, i));
    }
    m_frame = std::move(frame);
-   m_byDisplacement = byDisplacement;
+   m_coloured = coloured;
    m_newFrame = true;
 }
 
@@ -153,10 +153,11 @@ void SceneView::colors(Renderer &renderer)
    std::vector<Rgba> colors;
    colors.reserve(m_mesh.cells.size());
    for (std::size_t slot = 0; slot < m_mesh.cells.size(); ++slot) {
-      const std::int64_t cell = m_frame && m_byDisplacement ? m_sceneCell[slot] : -1;
+      const std::int64_t cell = m_frame && m_coloured ? m_sceneCell[slot] : -1;
       if (cell >= 0) {
-         const double value = m_frame->displacement[static_cast<std::size_t>(cell)];
-         colors.push_back(fieldColor(m_frame->highest > 0 ? value / m_frame->highest : 0));
+         const double value = m_frame->values[static_cast<std::size_t>(cell)];
+         const double range = m_frame->highest - m_frame->lowest;
+         colors.push_back(fieldColor(range > 0 ? (value - m_frame->lowest) / range : 0));
          continue;
       }
       const auto &rgb = model.material(m_mesh.material[slot]).color;

@@ -12,14 +12,14 @@
 
 namespace diatom::render {
 
-/// A moment of a simulation. Immutable; shared between the one who steps and the one who draws.
+/// A moment of a simulation, or a balance. Immutable; shared between the one who steps and the one who draws.
 struct Moment
 {
    std::shared_ptr<const std::vector<Index>> indices; // of the scene's cells, sorted
    Frame frame;
-   std::vector<double> displacement; // m, per cell
-   double highest = 0;               // largest displacement of the run so far, m
-   double realTimeFactor = 0;        // simulated over wall time, lately; 0 = not known
+   std::vector<double> values; // that cells are coloured by: displacement in m, or an output of the solver
+   double lowest = 0, highest = 0; // of them, in the run so far
+   double realTimeFactor = 0;      // simulated over wall time, lately; 0 = not known
 };
 
 class SceneView
@@ -31,7 +31,7 @@ public:
    static constexpr std::size_t kWholeCellBudget = 50'000;
 
    void setDesign(std::shared_ptr<const Hierarchy> hierarchy, bool composites, bool grid);
-   void setFrame(std::shared_ptr<const Moment> frame, bool byDisplacement);
+   void setFrame(std::shared_ptr<const Moment> frame, bool coloured);
    /// Drawn in the place of cells and boxes until another design is set; null draws those again.
    void setSurface(std::shared_ptr<const Surface> surface);
    const std::shared_ptr<const Surface> &surface() const { return m_surface; }
@@ -64,7 +64,7 @@ private:
    std::shared_ptr<const Surface> m_surface, m_references;
    std::shared_ptr<const Moment> m_frame;
    std::vector<std::int64_t> m_sceneCell; // by slot, of the frame's scene
-   bool m_byDisplacement = false, m_boxed = false;
+   bool m_coloured = false, m_boxed = false;
    bool m_newMesh = false, m_newFrame = false, m_newReferences = false;
 };
 

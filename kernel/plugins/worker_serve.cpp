@@ -92,6 +92,13 @@ class Server
 {
 public:
    explicit Server(Line line) : m_line(std::move(line)) {}
+   ~Server()
+   {
+      if (m_self)
+         m_table->destroy(m_self); // it may have more to end than memory
+   }
+   Server(const Server &) = delete;
+   Server &operator=(const Server &) = delete;
 
    int run()
    {

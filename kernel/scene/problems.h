@@ -35,6 +35,11 @@ std::vector<Problem> findFloatingBodies(const Hierarchy &hierarchy, const Bodies
 std::vector<Problem> findUnheldBodies(const Hierarchy &hierarchy, const Bodies &bodies, const Setup &setup,
                                       const Job &job);
 
+/// Refuses what has no balance of its own, before a solver is asked: ErrorCode::invalid. What may have one
+/// all the same, as bodies that may turn, comes as warnings. Set-ups with problems pass: building the scene
+/// tells those.
+Result<std::vector<Problem>> checkHeld(const Hierarchy &hierarchy, const Setup &setup, const Job &job);
+
 /// Up to four cells: "(1, 2, 3), (4, 5, 6) and 7 more".
 std::string indicesText(const std::vector<Index> &cells);
 

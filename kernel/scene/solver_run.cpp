@@ -263,6 +263,9 @@ std::vector<SolverRun::Told> SolverRun::told() const
    std::vector<Told> list;
    for (const auto &[name, output] : m_outputs)
       list.push_back({name, output.unit, output.rows, output.stride});
+   std::sort(list.begin(), list.end(), [this](const Told &a, const Told &b) {
+      return m_outputs.at(a.name).number < m_outputs.at(b.name).number;
+   });
    return list;
 }
 

@@ -56,8 +56,8 @@ public:
    /// `count` rows of an output from row `first`, stride numbers each.
    Result<std::vector<double>> read(const std::string &name, std::int64_t first, std::int64_t count,
                                     const Job &job) const;
-   /// What the solver tells: name, unit, rows, and numbers of each row. Those whose names begin with link_
-   /// have a row for each link of the scene.
+   /// What the solver tells, in its order. Outputs whose names begin with link_ have a row for each link of
+   /// the scene.
    struct Told
    {
       std::string name, unit;

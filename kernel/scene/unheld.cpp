@@ -144,4 +144,20 @@ std::vector<Problem> findUnheldBodies(const Hierarchy &hierarchy, const Bodies &
    return problems;
 }
 
+Result<std::vector<Problem>> checkHeld(const Hierarchy &hierarchy, const Setup &setup, const Job &job)
+{
+   if (!findSetupProblems(hierarchy, setup).empty() || hierarchy.cells() == 0)
+      return std::vector<Problem>();
+   const auto bodies = findBodies(hierarchy, job);
+   if (!bodies)
+      return bodies.error();
+   for (const Problem &problem : findFloatingBodies(hierarchy, *bodies, setup))
+      return Error{ErrorCode::invalid, "there is no static balance: " + problem.text};
+   std::vector<Problem> loose = findUnheldBodies(hierarchy, *bodies, setup, job);
+   for (const Problem &problem : loose)
+      if (problem.kind == "not-held")
+         return Error{ErrorCode::invalid, "there is no static balance: " + problem.text};
+   return loose;
+}
+
 } // namespace diatom

@@ -61,7 +61,7 @@ std::vector<Broken> brokenRules()
        {"machine.long", "machine.long", "too many parts"},
        {"machine.cancel", "machine.cancel", "look at cancelled()", kWarned},
        {"solver.abilities", "solver.abilities", "it names no physics"},
-       {"solver.parameters", "solver.parameters", "is not a number at row 0"},
+       {"solver.parameters", "solver.parameters", "is not a number at cell (0, 0, 0)"},
        {"solver.life", "solver.life", "each step leaves", kFailed, true},
        {"solver.estimate", "solver.estimate", "it said 0 kB and took", kFailed, true},
        {"solver.repeats", "solver.repeats", "asked twice, it answers differently"},

@@ -273,7 +273,7 @@ void PluginNewTest::theSolverFindsTheLineOfABar()
       // 10 K times 0.5 W/(m K) times (1 mm)2 over 1 mm.
       QVERIFY(std::abs(lines[n].split(',').last().toDouble() - 5e-3) < 1e-12);
    }
-   QVERIFY(textOf(state).startsWith("i,j,k,material,supplied (W),temperature (K)\n"));
+   QVERIFY(textOf(state).startsWith("i,j,k,material,temperature (K),supplied (W)\n"));
    const auto unknown = diatom({"solve", bar, "--probe", "3,0,0:strain"});
    QVERIFY(unknown.exit != 0);
    QVERIFY2(unknown.err.contains("strain"), unknown.err.constData());

@@ -115,7 +115,7 @@ private slots:
          const Vec3 at = hierarchy->lattice().position(i) + Vec3(0, 0, 1e-3);
          moment->frame.position.insert(moment->frame.position.end(), at.data(), at.data() + 3);
          moment->frame.rotation.insert(moment->frame.rotation.end(), {1, 0, 0, 0});
-         moment->displacement.push_back(1e-3);
+         moment->values.push_back(1e-3);
       }
       moment->highest = 1e-3;
       moment->indices = std::make_shared<const std::vector<Index>>(indices);
