@@ -1,13 +1,10 @@
 // diatom plan: the order of assembly of a design, and the program that makes a machine build it.
 #include "cli/commands.h"
 
-#include "assembly/chosen_parts.h"
-#include "core/file.h"
+#include "assembly/assemble.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-
-#include <optional>
 
 namespace diatom::cli {
 
@@ -42,53 +39,8 @@ Result<AssemblySetup> setupOf(const PlanArguments &arguments, const AssemblySetu
    return setup;
 }
 
-struct Planned
-{
-   std::string machine, parts;
-   std::int64_t total = 0; // parts of the design
-   AssemblyPlan plan;
-   ProgramSummary summary;
-};
-
-Result<Planned> planAndWrite(const PlanArguments &arguments, const Context::Input &input, Context &context)
-{
-   const Job &job = context.job();
-   const Catalogue &catalogue = *context.catalogue();
-   const Design &design = input.opened.design;
-   const auto setup = setupOf(arguments, design.assembly, catalogue);
-   if (!setup)
-      return setup.error();
-   const auto machine = Machine::make(catalogue, setup->machine, setup->machineValues, job);
-   if (!machine)
-      return machine.error();
-   const auto maker = chosenParts(catalogue, *setup, "", input.lattice->spec().id, job);
-   if (!maker)
-      return maker.error();
-   const auto parts = (*maker)->decompose(*input.hierarchy, job);
-   if (!parts)
-      return parts.error();
-   auto plan = planAssembly(*input.hierarchy, *parts, job);
-   if (!plan)
-      return plan.error();
-
-   std::optional<AtomicFile> file;
-   if (!arguments.out.empty())
-      file.emplace(arguments.out);
-   const auto sink = [&](std::string_view text) {
-      if (file)
-         file->write(text);
-   };
-   auto summary = (*machine)->write(*input.hierarchy, *parts, *plan, design.name, sink, job);
-   if (!summary)
-      return summary.error();
-   if (file)
-      if (const Status status = file->commit(); !status)
-         return status.error();
-   return Planned{setup->machine, (*maker)->id(), static_cast<std::int64_t>(parts->parts.size()),
-                  *std::move(plan), *std::move(summary)};
-}
-
-nlohmann::ordered_json reportOf(const Planned &planned, const PlanArguments &arguments)
+nlohmann::ordered_json reportOf(const Assembled &planned, const std::string &machine,
+                                const PlanArguments &arguments)
 {
    auto materials = nlohmann::ordered_json::object();
    for (const auto &[material, count] : planned.summary.byMaterial)
@@ -107,7 +59,7 @@ nlohmann::ordered_json reportOf(const Planned &planned, const PlanArguments &arg
          }
          problems.push_back(std::move(entry));
       }
-   nlohmann::ordered_json report{{"machine", planned.machine}, {"parts", planned.parts}};
+   nlohmann::ordered_json report{{"machine", machine}, {"parts", planned.parts}};
    if (!arguments.out.empty())
       report["file"] = arguments.out;
    report["placements"] = planned.summary.placements;
@@ -124,13 +76,20 @@ void runPlan(const PlanArguments &arguments, Context &context)
    const auto input = context.open(arguments.file);
    if (!input)
       return;
-   const auto planned = planAndWrite(arguments, *input, context);
+   const Design &design = input->opened.design;
+   const auto setup = setupOf(arguments, design.assembly, *context.catalogue());
+   if (!setup) {
+      context.fail(setup.error());
+      return;
+   }
+   const auto planned =
+       assemble(*context.catalogue(), *setup, *input->hierarchy, design.name, arguments.out, context.job());
    if (!planned) {
       context.fail(planned.error());
       return;
    }
    if (arguments.out != "-") // standard output is the program itself
-      context.print(reportOf(*planned, arguments));
+      context.print(reportOf(*planned, setup->machine, arguments));
    const std::int64_t left = planned->total - planned->summary.placements;
    if (left > 0) {
       context.note(fmt::format("{} of {} parts cannot be placed; {}", left, planned->total,

@@ -60,6 +60,7 @@ private:
    void makeMenus();
    void makeNewMenu(QMenu *file);
    void makeSamplesMenu(QMenu *file);
+   void makeMachineMenu(QMenu *file);
    void makeToolColumn();
    void makeDocks();
    void makeStatusBar();
@@ -71,6 +72,8 @@ private:
    bool save(bool elsewhere);
    void chooseExport();
    void exportTo(const ExportRequest &request);
+   /// Asks where to, plans the assembly and writes the machine's program in the background.
+   void writeProgram(const std::string &machine);
    void openMesh(const std::filesystem::path &file);
    void fillMesh(const std::filesystem::path &file, const ImportRequest &request);
    /// False, with a message, while other work is going on.

@@ -2,11 +2,13 @@
 // exported parts and struts look.
 #include "gui/main_window.h"
 
+#include "assembly/assemble.h"
 #include "assembly/chosen_parts.h"
 #include "gui/export_dialog.h"
 #include "gui/import_dialog.h"
 #include "render/surface.h"
 
+#include <QFileDialog>
 #include <QFileInfo>
 #include <QLocale>
 
@@ -207,6 +209,57 @@ void MainWindow::fillMesh(const std::filesystem::path &file, const ImportRequest
           result->emplace(importMesh(file, request.mesh, *request.lattice, job));
        },
        [this, result, file, agreed = m_session.revision()] { takeRead(*std::move(*result), file, agreed); });
+}
+
+void MainWindow::writeProgram(const std::string &machine)
+{
+   const auto hierarchy = m_session.hierarchy();
+   if (!hierarchy || hierarchy->cells() == 0) {
+      m_messages->showMessage(tr("There are no cells to assemble; place some first."), true);
+      return;
+   }
+   AssemblySetup setup = m_session.design().assembly;
+   if (setup.machine != machine)
+      setup.machineValues.clear();
+   setup.machine = machine;
+   const auto made = Machine::make(*m_session.catalogue(), machine, setup.machineValues, Job());
+   if (!made) {
+      showFailure(made.error());
+      return;
+   }
+   const QString suffix = QString::fromUtf8((*made)->description().suffix);
+   auto *dialog =
+       new QFileDialog(this, tr("Machine Program"), lastFolder("program"), tr("Programs (*.%1)").arg(suffix));
+   dialog->setObjectName(QStringLiteral("programDialog"));
+   dialog->setAttribute(Qt::WA_DeleteOnClose);
+   dialog->setAcceptMode(QFileDialog::AcceptSave);
+   dialog->setDefaultSuffix(suffix);
+   connect(dialog, &QFileDialog::fileSelected, this, [this, setup, hierarchy](const QString &file) {
+      rememberFolder("program", file);
+      auto result = std::make_shared<std::optional<Result<Assembled>>>();
+      startTask(
+          tr("Planning %1").arg(QFileInfo(file).fileName()),
+          [result, setup, hierarchy, file = file.toStdString(), catalogue = m_session.catalogue(),
+           name = m_session.design().name](const Job &job) {
+             result->emplace(assemble(*catalogue, setup, *hierarchy, name, file, job));
+          },
+          [this, result, file] {
+             if (!result->value().ok())
+                return showFailure(result->value().error());
+             const Assembled &done = *result->value();
+             const std::int64_t left = done.total - done.summary.placements;
+             QString words = tr("%1: %2 parts placed, about %3 min.")
+                                 .arg(QFileInfo(file).fileName())
+                                 .arg(done.summary.placements)
+                                 .arg(done.summary.seconds / 60, 0, 'f', 1);
+             if (left > 0 && !done.plan.problems.empty())
+                words += tr(" %1 cannot be placed: %2")
+                             .arg(left)
+                             .arg(QString::fromStdString(done.plan.problems.front().text));
+             m_messages->showMessage(words, left > 0);
+          });
+   });
+   dialog->open();
 }
 
 void MainWindow::showAs(GeometryOptions::What what)

@@ -50,6 +50,7 @@ void MainWindow::makeMenus()
          makeSamplesMenu(menu);
          m_references = new ReferenceMenu(&m_session, m_viewport, menu);
          menu->addMenu(m_references);
+         makeMachineMenu(menu);
       }
       m_actions.addTo(menu, id);
    }
@@ -103,6 +104,21 @@ void MainWindow::makeSamplesMenu(QMenu *file)
       }
       if (!files.empty())
          break;
+   }
+   menu->setEnabled(!menu->isEmpty());
+}
+
+void MainWindow::makeMachineMenu(QMenu *file)
+{
+   QMenu *menu = file->addMenu(tr("&Machine Program"));
+   menu->setObjectName(QStringLiteral("menu.machines"));
+   for (const Offer &offer : m_session.catalogue()->offers(DIATOM_MACHINE_1)) {
+      const std::string id = offer.provided->id;
+      QAction *action = menu->addAction(tr("%1…").arg(QString::fromStdString(offer.provided->name)));
+      action->setObjectName(QStringLiteral("file.machine.") + QString::fromStdString(id));
+      action->setToolTip(tr("Plan the assembly and write the program: %1")
+                             .arg(QString::fromStdString(offer.provided->summary)));
+      connect(action, &QAction::triggered, this, [this, id] { writeProgram(id); });
    }
    menu->setEnabled(!menu->isEmpty());
 }

@@ -2,11 +2,14 @@
 // become cells, and the view of parts and struts.
 #include "studio.h"
 
+#include "assembly/assemble.h"
+#include "core/file.h"
 #include "formats/mesh_facts.h"
 #include "io/mesh_read.h"
 
 #include <QComboBox>
 #include <QFile>
+#include <QFileDialog>
 #include <QLineEdit>
 #include <QMessageBox>
 #include <QPushButton>
@@ -91,6 +94,7 @@ private slots:
    void aMeshIsFilledWithCells();
    void aBadMeshSaysSo();
    void editsMadeWhileAFileIsReadAreNotLost();
+   void aMachineProgramIsWritten();
    void partsAndStrutsAreShownUntilTheNextEdit();
    void aReferenceMeshIsShownHiddenAndRemoved();
    void aDesignOfAMissingLatticeIsToldAndKept();
@@ -419,6 +423,38 @@ void ExchangeTest::editsMadeWhileAFileIsReadAreNotLost()
    QVERIFY(studio.window.session().run("set-name", {{"name", "and again"}}));
    QVERIFY(answer(QMessageBox::Discard));
    QVERIFY(studio.window.windowTitle().contains("gripper"));
+}
+
+void ExchangeTest::aMachineProgramIsWritten()
+{
+   ExchangeStudio studio;
+   QVERIFY(studio.ready());
+   QVERIFY(studio.openSample("capacitor-tower"));
+   const std::string machine = "org.diatom_cad.machine.gcode";
+   QVERIFY(studio.choose({"menu.file", "menu.machines"}, ("file.machine." + machine).c_str()));
+   auto *dialog = studio.dialog<QFileDialog>();
+   QVERIFY(dialog);
+   const QTemporaryDir dir;
+   auto *line = dialog->findChild<QLineEdit *>("fileNameEdit");
+   line->setFocus();
+   line->selectAll();
+   QTest::keyClicks(line, dir.filePath("tower")); // the suffix is the machine's
+   QTest::keyClick(line, Qt::Key_Return);
+   const QString file = dir.filePath("tower.ngc");
+   QVERIFY(QTest::qWaitFor([&] { return QFile::exists(file) && !studio.window.busy(); }, 60000));
+   QVERIFY2(studio.message().startsWith("tower.ngc: "), qPrintable(studio.message()));
+   QVERIFY2(studio.message().contains("parts placed, about"), qPrintable(studio.message()));
+   // The bytes that the command line writes.
+   gui::Session &session = studio.window.session();
+   AssemblySetup setup = session.design().assembly;
+   setup.machine = machine;
+   const std::string again = dir.filePath("again.ngc").toStdString();
+   DIATOM_VERIFY_OK(
+       assemble(*session.catalogue(), setup, *session.hierarchy(), session.design().name, again, Job()));
+   const auto written = readFile(file.toStdString()), expected = readFile(again);
+   DIATOM_VERIFY_OK(written);
+   DIATOM_VERIFY_OK(expected);
+   QVERIFY(expected->size() > 1000 && *written == *expected);
 }
 
 QTEST_MAIN(ExchangeTest)
