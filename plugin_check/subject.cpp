@@ -139,10 +139,10 @@ std::optional<std::int64_t> growthPerCall(int calls, const std::function<void()>
       const std::int64_t before = bytesInUse();
       const auto begin = Clock::now();
       int made = 0;
-      while (made < calls && (made < kLeastCalls || secondsSince(begin) < kRoundSeconds)) {
+      do {
          call();
          ++made;
-      }
+      } while (made < calls && (made < kLeastCalls || secondsSince(begin) < kRoundSeconds));
       return (bytesInUse() - before) / made;
    };
    round(); // what is kept once
