@@ -52,7 +52,7 @@ std::shared_ptr<const Catalogue> findPlugins()
    return Catalogue::find(defaultPluginFolders(), false, Isolate::outside);
 }
 
-std::shared_ptr<const Catalogue> askForConsent(std::shared_ptr<const Catalogue> catalogue,
+std::shared_ptr<const Catalogue> askForConsent(const std::shared_ptr<const Catalogue> &catalogue,
                                                QSettings &settings, QWidget *parent)
 {
    bool trusted = false;

@@ -16,7 +16,7 @@ std::shared_ptr<const Catalogue> findPlugins();
 /// Asks for each library of the user's plugin folder that was neither trusted nor declined before. What is
 /// declined is remembered in the settings by its hash, so that it is not asked again; trust can still be
 /// given in the list of plugins. The catalogue is found anew when something was trusted.
-std::shared_ptr<const Catalogue> askForConsent(std::shared_ptr<const Catalogue> catalogue,
+std::shared_ptr<const Catalogue> askForConsent(const std::shared_ptr<const Catalogue> &catalogue,
                                                QSettings &settings, QWidget *parent = nullptr);
 
 } // namespace diatom::gui
