@@ -171,7 +171,8 @@ std::string notANumber(const std::string &text)
          word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
          continue;
       }
-      if (word == "nan" || word == "inf" || word == "xnan" || word == "ynan" || word == "znan")
+      constexpr std::size_t kWithAxis = 4; // "xnan": a letter of the program before the number
+      if (word.size() <= kWithAxis && (word.ends_with("nan") || word.ends_with("inf")))
          return word;
       word.clear();
    }

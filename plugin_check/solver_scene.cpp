@@ -25,14 +25,6 @@ std::vector<std::string> wordsOf(const char *const *words, std::int64_t count)
    return copied;
 }
 
-std::shared_ptr<const Catalogue> isolatedCatalogue(const Subject &subject)
-{
-   std::vector<PluginFolder> folders{PluginFolder(subject.manifest.folder.parent_path(), Origin::installed)};
-   for (PluginFolder &other : defaultPluginFolders())
-      folders.push_back(std::move(other));
-   return Catalogue::find(folders, false, Isolate::all);
-}
-
 } // namespace
 
 bool Abilities::has(const std::vector<std::string> &list, const std::string &word) const
@@ -118,7 +110,8 @@ Result<Answers> runTrial(const Subject &subject, const Trial &trial, const RunOp
    auto scene = trial.scene(subject);
    if (!scene)
       return scene.error();
-   auto run = SolverRun::create(options.isolated ? isolatedCatalogue(subject) : subject.catalogue,
+   auto run = SolverRun::create(options.isolated ? Catalogue::find(subject.folders, false, Isolate::all)
+                                                 : subject.catalogue,
                                 *std::move(scene), trial.design.setup, options.values, job);
    if (!run)
       return run.error();

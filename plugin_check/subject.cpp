@@ -96,10 +96,10 @@ Result<Subject> openSubject(const fs::path &folder, std::uint64_t seed, std::vec
    subject.seed = seed;
    subject.designs = std::move(designs);
    // As an installed one: it is run without a trial and without asking, since each check has its own process.
-   std::vector<PluginFolder> folders{PluginFolder(real.parent_path(), Origin::installed)};
+   subject.folders.emplace_back(real.parent_path(), Origin::installed);
    for (PluginFolder &other : defaultPluginFolders())
-      folders.push_back(std::move(other));
-   subject.catalogue = Catalogue::find(folders);
+      subject.folders.push_back(std::move(other));
+   subject.catalogue = Catalogue::find(subject.folders);
    for (const Candidate &candidate : subject.catalogue->candidates())
       if (fs::equivalent(candidate.folder, real, failed) && !candidate.accepted)
          return Error{ErrorCode::unsupported, fmt::format("{}: {}", real.string(), candidate.verdict)};

@@ -19,6 +19,7 @@ namespace diatom::check {
 struct Subject
 {
    Manifest manifest;
+   std::vector<PluginFolder> folders;          // where the catalogue looks
    std::shared_ptr<const Catalogue> catalogue; // this plugin's folder first, then what is installed
    std::vector<std::filesystem::path> designs; // of the author's, to try it on
    std::uint64_t seed = 0;
