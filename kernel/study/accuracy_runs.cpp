@@ -27,6 +27,8 @@ constexpr std::int64_t kCurveSamples = 16;  // of a curve
 constexpr std::int64_t kSwingSamples = 512; // samples where a frequency is wanted: some sixty a swing
 constexpr double kStepsWithoutLimit = 16;   // in the run, at the coarsest, for solvers that no step can upset
 constexpr double kFirstPass = 0.7;          // of the budget; the rest is for timing again
+/// Settings whose longest step is below this part of the longest of all come last: they are there to compare.
+constexpr double kShortStep = 0.1;
 /// A setting not yet tried may take this many times as long a step as the scene's own: Runge-Kutta takes
 /// four.
 constexpr double kUnknownCost = 5;
@@ -166,15 +168,18 @@ Status AccuracyRuns::plan(const Job &job)
    for (std::size_t variant = 0; variant < m_variants.size(); ++variant)
       if (const Status planned = planMotion(variant, job); !planned)
          return planned;
-   addSteps();
-   return {};
-}
-
-void AccuracyRuns::addSteps()
-{
    double longest = 0;
    for (const AccuracyLadder &ladder : m_ladders)
       longest = std::max(longest, ladder.limit);
+   std::stable_partition(m_ladders.begin(), m_ladders.end(), [&](const AccuracyLadder &ladder) {
+      return !(ladder.limit > 0 && ladder.limit < kShortStep * longest);
+   });
+   addSteps(longest);
+   return {};
+}
+
+void AccuracyRuns::addSteps(double longest)
+{
    const double stretches = longest > 0 ? m_plan.until / longest : kStepsWithoutLimit;
    const bool swings = m_plan.quantity.when == Quantity::When::frequency;
    m_samples = std::clamp<std::int64_t>(std::llround(std::min(stretches, 1e6)), 1,

@@ -76,7 +76,8 @@ private:
    Status addVariants(const Job &job);
    void planStill(std::size_t variant);
    Status planMotion(std::size_t variant, const Job &job);
-   void addSteps();
+   /// `longest` stable step of all, s; 0 without any.
+   void addSteps(double longest);
    Status run(AccuracyRun &one, const Job &job);
    double predictedSeconds(const AccuracyRun &one) const;
    const SubjectVariant &variantOf(const AccuracyLadder &ladder) const { return m_variants[ladder.variant]; }

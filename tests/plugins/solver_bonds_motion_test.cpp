@@ -2,27 +2,12 @@
 // that is caught.
 #include "solver_bonds_scene.h"
 
-#include <random>
-
 using namespace diatom::test;
 
 namespace {
 
 using Props = std::map<std::string, double>;
 const Props kSoft{{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}};
-
-/// A free block whose cells all move at random, `speed` m/s and as much at their rims.
-void kickAll(HandScene &scene, double speed)
-{
-   std::mt19937_64 random(7);
-   std::uniform_real_distribution<double> unit(-1, 1);
-   for (int i = 0; i < scene.cells(); ++i) {
-      std::vector<double> row;
-      for (int k = 0; k < 6; ++k)
-         row.push_back(unit(random) * speed * (k < 3 ? 1 : 2 / scene.pitch));
-      scene.addRow("velocity", row, i);
-   }
-}
 
 double relative(const std::vector<double> &a, const std::vector<double> &b)
 {

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
@@ -176,6 +177,19 @@ private:
    std::vector<double> values;
    std::vector<diatom_channel> channelViews;
 };
+
+/// All cells move at random, `speed` m/s and as much at their rims.
+inline void kickAll(HandScene &scene, double speed, unsigned seed = 7)
+{
+   std::mt19937_64 random(seed);
+   std::uniform_real_distribution<double> unit(-1, 1);
+   for (int i = 0; i < scene.cells(); ++i) {
+      std::vector<double> row;
+      for (int k = 0; k < 6; ++k)
+         row.push_back(unit(random) * speed * (k < 3 ? 1 : 2 / scene.pitch));
+      scene.addRow("velocity", row, i);
+   }
+}
 
 /// The plugin's table.
 inline const diatom_solver *bondSolver()

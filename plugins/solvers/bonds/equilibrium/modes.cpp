@@ -15,6 +15,10 @@ namespace {
 /// is the most that their frequencies can be wrong by.
 constexpr double kSharp = 1e-9, kSharpHighest = 1e-6;
 constexpr std::size_t kMostVectors = 600;
+/// Copies of an eigenvalue that are looked for; a cube has fivefold ones.
+constexpr std::size_t kMostCopies = 6;
+/// Vectors between two looks, at least.
+constexpr std::size_t kLookEvery = 6;
 /// Part of the largest eigenvalue that the shift starts at: small against most first modes, large against
 /// rounding.
 constexpr double kShift = 1e-9;
@@ -179,12 +183,16 @@ ModeShapes shapesOf(const Operator &from, const RitzSpace &space, std::size_t wa
    return out;
 }
 
+/// More starts than modes are wanted find nothing that is, and the fewer there are the faster a space of so
+/// many vectors converges.
+std::size_t startsFor(std::size_t wanted) { return std::min(wanted + 1, kMostCopies); }
+
 /// Grows the space until so many are sharp; false where the operator fails.
 bool growUntilSharp(const sdk::Call &call, RitzSpace &space, std::size_t wanted)
 {
    Eigen::VectorXd values;
    Eigen::MatrixXd vectors;
-   std::size_t look = wanted + RitzSpace::kStarts;
+   std::size_t look = wanted + kLookEvery;
    while (!call.cancelled() && !space.full() && space.done() < kMostVectors) {
       if (!space.grow(call))
          return false;
@@ -192,7 +200,7 @@ bool growUntilSharp(const sdk::Call &call, RitzSpace &space, std::size_t wanted)
          if (space.sharp(values, vectors) >= wanted + 1)
             break; // one more than asked for: none before has been overlooked
          // A look costs the cube of what is there; looked at ever later, all of them cost little.
-         look = space.done() + std::max(RitzSpace::kStarts, space.done() / 8);
+         look = space.done() + std::max(kLookEvery, space.done() / 8);
       }
       call.progress(std::min(1.0, static_cast<double>(space.done()) / static_cast<double>(8 * wanted)),
                     "seeking modes");
@@ -231,7 +239,7 @@ ModeShapes lowestModes(const sdk::Call &call, const Balance &balance, const Stat
    const std::size_t modes = std::min(static_cast<std::size_t>(wanted), size);
    ModeShapes out;
    while (modes > 0 && inverted.shiftBelowAll(call)) {
-      RitzSpace space(inverted, size, kSharp);
+      RitzSpace space(inverted, size, startsFor(modes), kSharp);
       if (growUntilSharp(call, space, modes) && space.done() > 0) {
          out = shapesOf(inverted, space, modes, [&](double ritz) {
             const double value = 1 / ritz + inverted.shift();
@@ -253,7 +261,7 @@ ModeShapes highestModes(const sdk::Call &call, const Balance &balance, const Sta
    const std::size_t modes = std::min(static_cast<std::size_t>(wanted), size);
    ModeShapes out;
    if (modes > 0) {
-      RitzSpace space(direct, size, kSharpHighest);
+      RitzSpace space(direct, size, startsFor(modes), kSharpHighest);
       growUntilSharp(call, space, modes);
       out = shapesOf(direct, space, modes, [](double ritz) { return ritz; });
       std::reverse(out.eigenvalue.begin(), out.eigenvalue.end());

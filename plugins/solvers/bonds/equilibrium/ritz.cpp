@@ -39,7 +39,7 @@ void RitzSpace::appendRandom()
 
 bool RitzSpace::grow(const sdk::Call &call)
 {
-   while (m_basis.size() < std::min(kStarts, m_size) || m_basis.size() == m_done)
+   while (m_basis.size() < std::min(m_starts, m_size) || m_basis.size() == m_done)
       appendRandom();
    Vector w;
    if (!m_operator->apply(call, m_basis[m_done], w))

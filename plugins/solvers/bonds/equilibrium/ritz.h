@@ -20,13 +20,11 @@ public:
 class RitzSpace
 {
 public:
-   /// Repeated eigenvalues up to this often are sure to be found; a cube has fivefold ones.
-   static constexpr std::size_t kStarts = 6;
-
-   /// `size` of the whole space. A vector is sharp where the operator takes it beyond the subspace by no more
+   /// `size` of the whole space. Eigenvalues that repeat are sure to be found as often as there are `starts`.
+   /// A vector is sharp where the operator takes it beyond the subspace by no more
    /// than `sharpness` of its eigenvalue; the eigenvalue is then that close, and mostly by the square.
-   RitzSpace(const SymmetricOperator &symmetric, std::size_t size, double sharpness)
-       : m_operator(&symmetric), m_size(size), m_sharpness(sharpness)
+   RitzSpace(const SymmetricOperator &symmetric, std::size_t size, std::size_t starts, double sharpness)
+       : m_operator(&symmetric), m_size(size), m_starts(starts), m_sharpness(sharpness)
    {}
 
    /// Takes the operator to one more vector; false where it fails.
@@ -42,7 +40,7 @@ private:
    void appendRandom();
 
    const SymmetricOperator *m_operator;
-   std::size_t m_size;
+   std::size_t m_size, m_starts;
    double m_sharpness;
    std::vector<Vector> m_basis;
    std::vector<Column> m_column; // of the operator, for each vector that is done

@@ -1,6 +1,8 @@
-// Semi-implicit Euler, position Verlet and Runge-Kutta 4. Rotations move by the exponential of spin times
-// step; cells that are no cubes keep their angular momentum, not their spin.
+// Semi-implicit Euler, position Verlet and integrators in stages. Rotations move by the exponential of spin
+// times step; cells that are no cubes keep their angular momentum, not their spin.
 #include "explicit/dynamics.h"
+
+#include "explicit/stages.h"
 
 #include <limits>
 
@@ -42,7 +44,7 @@ Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const 
 {
    select(effectsOf(assembly, couplings), std::make_integer_sequence<unsigned, 32>());
    const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
-   if (m_integrator == Options::Integrator::rungeKutta) {
+   if (!stagesOf(m_integrator).empty()) {
       m_start.resize(m_state.block.size());
       m_sum.resize(m_state.block.size());
    } else if (m_integrator == Options::Integrator::verlet && rates) {
@@ -128,7 +130,7 @@ void Dynamics::drift(std::int64_t i, double dt)
    m_state.setSpin(i, spinFrom(*m_assembly, i, now, momentum, w));
 }
 
-void Dynamics::stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque)
+void Dynamics::stageCell(std::int64_t i, double dt, const StageOfStep &stage, Vec3 force, Vec3 torque)
 {
    const Assembly &assembly = *m_assembly;
    const Vec3 v = m_state.velocityOf(i), w = m_state.spinOf(i);
@@ -150,15 +152,14 @@ void Dynamics::stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 for
                             spinRate.x,
                             spinRate.y,
                             spinRate.z};
-   const bool last = stage.number == 3;
    for (int k = 0; k < 13; ++k) {
       const std::int64_t at = k * m_state.n + i;
-      if (stage.number == 0) {
+      if (stage.first) {
          m_start[at] = m_state.block[at];
          m_sum[at] = 0;
       }
       m_sum[at] += stage.weight * rate[k];
-      m_state.block[at] = m_start[at] + (last ? dt * m_sum[at] : stage.next * rate[k]);
+      m_state.block[at] = m_start[at] + (stage.last ? dt * m_sum[at] : stage.next * rate[k]);
    }
    const Quat now = m_state.turnOf(i);
    const double f = 1 / std::sqrt(now.w * now.w + now.x * now.x + now.y * now.y + now.z * now.z);
@@ -166,7 +167,7 @@ void Dynamics::stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 for
 }
 
 template<unsigned Effects>
-void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t begin, std::int64_t end,
+void Dynamics::piece(Phase phase, double dt, const StageOfStep &stage, std::int64_t begin, std::int64_t end,
                      Sums &sums)
 {
    const auto moveGrip = [&](std::int64_t i, double time) {
@@ -215,7 +216,7 @@ void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t be
       case Phase::stage:
          net<Effects>(i, stage.ahead, dt * stage.weight, force, torque, sums);
          countLoad(i, dt * stage.weight);
-         if (stage.number == 3)
+         if (stage.last)
             moveGrip(i, dt);
          stageCell(i, dt, stage, force, torque);
          break;
@@ -223,7 +224,7 @@ void Dynamics::piece(Phase phase, double dt, const Stage &stage, std::int64_t be
    }
 }
 
-void Dynamics::cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage)
+void Dynamics::cells(const sdk::Call &call, Phase phase, double dt, const StageOfStep &stage)
 {
    inPieces(call, m_assembly->cells >= kCellsForThreads, m_assembly->cells,
             [&, piece = m_piece](std::int64_t begin, std::int64_t end, std::int64_t number) {
@@ -268,8 +269,8 @@ void Dynamics::advance(const sdk::Call &call, double time, double dt)
 {
    if (m_drive.active() && m_integrator != Options::Integrator::semiImplicit)
       m_drive.lead(*m_assembly, time, dt, m_state);
-   if (m_integrator == Options::Integrator::rungeKutta)
-      rungeKutta(call, time, dt);
+   if (!stagesOf(m_integrator).empty())
+      inStages(call, time, dt);
    else if (m_integrator == Options::Integrator::verlet)
       verlet(call, time, dt);
    else
@@ -304,13 +305,12 @@ void Dynamics::verlet(const sdk::Call &call, double time, double dt)
    cells(call, Phase::kickHalfDrift, dt);
 }
 
-void Dynamics::rungeKutta(const sdk::Call &call, double time, double dt)
+void Dynamics::inStages(const sdk::Call &call, double time, double dt)
 {
-   const Stage stages[4] = {{0, 0, 0.5 * dt, 1.0 / 6},
-                            {1, 0.5 * dt, 0.5 * dt, 1.0 / 3},
-                            {2, 0.5 * dt, dt, 1.0 / 3},
-                            {3, dt, 0, 1.0 / 6}};
-   for (const Stage &stage : stages) {
+   const auto stages = stagesOf(m_integrator);
+   for (std::size_t i = 0; i < stages.size(); ++i) {
+      const Stage &part = stages[i];
+      const StageOfStep stage{i == 0, i + 1 == stages.size(), dt * part.ahead, dt * part.next, part.weight};
       if (m_actuation.active())
          m_actuation.setRest(time + stage.ahead, m_rest);
       bondForces(call, dt * stage.weight);

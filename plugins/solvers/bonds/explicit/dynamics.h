@@ -22,27 +22,27 @@ public:
 private:
    void advance(const sdk::Call &call, double time, double dt) override;
    enum class Phase { kickDrift, halfDrift, predict, kickHalfDrift, stage };
-   struct Stage
+   /// A stage of a step, in seconds where stages.h has parts of it.
+   struct StageOfStep
    {
-      int number;
-      double ahead; // s after the start of the step
-      double next;  // s after the start of the step of the following stage
-      double weight;
+      bool first, last;
+      double ahead, next, weight;
    };
    template<unsigned Effects>
-   void piece(Phase phase, double dt, const Stage &stage, std::int64_t begin, std::int64_t end, Sums &sums);
+   void piece(Phase phase, double dt, const StageOfStep &stage, std::int64_t begin, std::int64_t end,
+              Sums &sums);
    template<unsigned Effects>
    void net(std::int64_t i, double ahead, double weight, Vec3 &force, Vec3 &torque, Sums &sums);
    void drift(std::int64_t i, double dt);
-   void stageCell(std::int64_t i, double dt, const Stage &stage, Vec3 force, Vec3 torque);
-   void cells(const sdk::Call &call, Phase phase, double dt, const Stage &stage = Stage{0, 0, 0, 0});
+   void stageCell(std::int64_t i, double dt, const StageOfStep &stage, Vec3 force, Vec3 torque);
+   void cells(const sdk::Call &call, Phase phase, double dt, const StageOfStep &stage = {});
    void bondForces(const sdk::Call &call, double weight);
    void countDrive(double time);
    void semiImplicit(const sdk::Call &call, double time, double dt);
    void verlet(const sdk::Call &call, double time, double dt);
-   void rungeKutta(const sdk::Call &call, double time, double dt);
+   void inStages(const sdk::Call &call, double time, double dt);
 
-   using Piece = void (Dynamics::*)(Phase, double, const Stage &, std::int64_t, std::int64_t, Sums &);
+   using Piece = void (Dynamics::*)(Phase, double, const StageOfStep &, std::int64_t, std::int64_t, Sums &);
    using Net = void (Dynamics::*)(std::int64_t, double, double, Vec3 &, Vec3 &, Sums &);
    template<unsigned... Effects>
    void select(unsigned effects, std::integer_sequence<unsigned, Effects...>);
@@ -51,7 +51,7 @@ private:
    CellForces m_between; // what couplings exert; empty columns without any
    Piece m_piece;
    Net m_net;
-   Column m_start, m_sum; // of Runge-Kutta: 13 per cell; of Verlet with damping: velocities
+   Column m_start, m_sum; // of stages: 13 per cell; of Verlet with damping: velocities
    std::vector<Sums> m_sums;
 };
 

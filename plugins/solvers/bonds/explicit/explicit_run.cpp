@@ -1,6 +1,7 @@
 #include "explicit/explicit_run.h"
 
 #include "explicit/dynamics.h"
+#include "explicit/stages.h"
 #include "explicit/vector_motion.h"
 #include "solid/couplings.h"
 
@@ -56,7 +57,7 @@ void ExplicitRun::estimate(const Options &options, const sdk::SceneView &scene, 
    const Assembly assembly(scene, options);
    const Couplings couplings = makeCouplings(scene, assembly);
    const StableStep stable = stableStep(assembly, options, couplings);
-   const double evaluations = options.integrator == Options::Integrator::rungeKutta ? 4 : 1;
+   const double evaluations = std::max(1.0, static_cast<double>(stagesOf(options.integrator).size()));
    const auto cells = static_cast<double>(assembly.cells), links = static_cast<double>(assembly.links);
    // Measured on one 2020s core; of the vector kernel on dense blocks (bench/results), others take up to
    // three times as long.

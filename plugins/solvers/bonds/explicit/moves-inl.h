@@ -1,4 +1,4 @@
-// What forces do to cells: kicks, drifts and stages of Runge-Kutta's method. Included once per instruction
+// What forces do to cells: kicks, drifts and stages. Included once per instruction
 // set.
 #if defined(BONDS_MOVES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BONDS_MOVES_INL_H
@@ -78,8 +78,8 @@ HWY_INLINE V powerOf(D d, const T *load, std::size_t stride, Three<V> v, Three<V
    return hn::Add(dot<false>(f, v), dot<false>(m, w));
 }
 
-/// What the torque of bonds, loads and drag makes of the spin of boxes: its rate in a stage of Runge-Kutta's
-/// method, otherwise its change over the kick.
+/// What the torque of bonds, loads and drag makes of the spin of boxes: its rate in a stage, otherwise its
+/// change over the kick.
 template<bool kFused, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_NOINLINE Three<V> turningOfBoxes(D d, const SweepWork<T> &work, std::size_t cell, Three<V> w,
                                      Three<V> torque, const Move &move)

@@ -64,7 +64,7 @@ struct Move
    double kick = 0, drift = 0; // s
    bool predict = false;       // kicked velocities go to `rate` only
 
-   /// A stage of Runge-Kutta's method instead: what it weighs in the step, and how far the next one is ahead
+   /// A stage (stages.h) instead: what it weighs in the step, and how far the next one is ahead
    /// of the start (s); the last one ends the step of `drift`.
    bool stage = false, first = false, last = false;
    double weight = 0, next = 0;
@@ -83,7 +83,7 @@ struct SweepWork
    T *state = nullptr;
    std::size_t stride = 0;
    T *rate = nullptr;                  // velocities and spins that dampers see: six columns, `stride` apart
-   T *start = nullptr, *sum = nullptr; // of Runge-Kutta's method: columns like those of the state
+   T *start = nullptr, *sum = nullptr; // of stages: columns like those of the state
    const T *inverseMass = nullptr, *inverseInertia = nullptr;
    const std::uint8_t *held = nullptr;
    const T *boxes = nullptr; // of cells that are no cubes: orientation w x y z, inertias x y z; else null

@@ -1,6 +1,7 @@
 #include "explicit/vector_motion.h"
 
 #include "explicit/forces.h"
+#include "explicit/stages.h"
 
 #include <cmath>
 
@@ -81,7 +82,7 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
    const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
    if (m_integrator == Options::Integrator::verlet && rates)
       m_rates.assign(6 * stride, 0);
-   if (m_integrator == Options::Integrator::rungeKutta) {
+   if (!stagesOf(m_integrator).empty()) {
       m_start.assign(13 * stride, 0);
       m_sum.assign(13 * stride, 0);
       m_sweep.start = m_start.data();
@@ -330,14 +331,11 @@ void VectorMotion<T>::halfDrift(const sdk::Call &call, double dt)
 }
 
 template<typename T>
-void VectorMotion<T>::rungeKutta(const sdk::Call &call, double time, double dt)
+void VectorMotion<T>::inStages(const sdk::Call &call, double time, double dt)
 {
-   const struct
-   {
-      double ahead, next, weight;
-   } stages[4] = {{0, 0.5, 1.0 / 6}, {0.5, 0.5, 1.0 / 3}, {0.5, 1, 1.0 / 3}, {1, 0, 1.0 / 6}};
-   for (int i = 0; i < 4; ++i) {
-      const auto &stage = stages[i];
+   const auto stages = stagesOf(m_integrator);
+   for (std::size_t i = 0; i < stages.size(); ++i) {
+      const Stage &stage = stages[i];
       if (m_actuation.active()) {
          m_actuation.setRest(time + stage.ahead * dt, m_rest);
          restChanged();
@@ -346,7 +344,7 @@ void VectorMotion<T>::rungeKutta(const sdk::Call &call, double time, double dt)
       move.drift = dt;
       move.stage = true;
       move.first = i == 0;
-      move.last = i == 3;
+      move.last = i + 1 == stages.size();
       move.weight = stage.weight;
       move.next = stage.next * dt;
       sweep(call, move, stage.weight * dt, stage.ahead * dt);
@@ -371,8 +369,8 @@ void VectorMotion<T>::advance(const sdk::Call &call, double time, double dt)
       for (const DrivenPlace &driven : m_drivenPlaces)
          push(driven.led.cell);
    }
-   if (m_integrator == Options::Integrator::rungeKutta)
-      rungeKutta(call, time, dt);
+   if (!stagesOf(m_integrator).empty())
+      inStages(call, time, dt);
    if (m_integrator == Options::Integrator::verlet) {
       halfDrift(call, 0.5 * dt);
       if (m_actuation.active()) {

@@ -46,7 +46,7 @@ private:
                     std::size_t hiStride);
    void visitDriven(Visit &visit, std::uint32_t place, const T *lo, const T *hi, std::size_t hiStride);
    void gripMoves(Sums &sums, std::uint32_t begin, std::uint32_t end, double dt);
-   void rungeKutta(const sdk::Call &call, double time, double dt);
+   void inStages(const sdk::Call &call, double time, double dt);
    void halfDrift(const sdk::Call &call, double dt);
    /// One cell from the columns to m_state, with the velocities that dampers see; and back.
    void pull(std::int64_t cell, bool rates = false) const;

@@ -13,15 +13,20 @@ Options Options::from(const sdk::Values &values)
    Options o;
    const auto integrator = values.text("integrator"), beam = values.text("beam"),
               gradient = values.text("gradient");
-   if (integrator != "semi_implicit" && integrator != "verlet" && integrator != "rk4" &&
-       integrator != "implicit")
+   constexpr std::pair<std::string_view, Integrator> integrators[] = {
+       {"semi_implicit", Integrator::semiImplicit},
+       {"verlet", Integrator::verlet},
+       {"rk4", Integrator::rungeKutta},
+       {"midpoint", Integrator::midpoint},
+       {"forward_euler", Integrator::forwardEuler},
+       {"implicit", Integrator::implicit}};
+   const auto *found = std::find_if(std::begin(integrators), std::end(integrators),
+                                    [&](const auto &one) { return one.first == integrator; });
+   if (found == std::end(integrators))
       throw Failure(DIATOM_BAD_INPUT, "unknown integrator \"" + std::string(integrator) + "\"");
+   o.integrator = found->second;
    if (beam != "timoshenko" && beam != "thesis" && beam != "euler")
       throw Failure(DIATOM_BAD_INPUT, "unknown beam theory \"" + std::string(beam) + "\"");
-   o.integrator = integrator == "rk4"        ? Integrator::rungeKutta
-                  : integrator == "verlet"   ? Integrator::verlet
-                  : integrator == "implicit" ? Integrator::implicit
-                                             : Integrator::semiImplicit;
    o.beam = beam == "thesis" ? Beam::thesis : beam == "euler" ? Beam::euler : Beam::timoshenko;
    const auto precision = values.text("precision");
    if (precision != "f64" && precision != "f32")

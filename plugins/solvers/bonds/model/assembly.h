@@ -19,7 +19,7 @@ using Column = std::vector<double>;
 /// How the user asked for it.
 struct Options
 {
-   enum class Integrator { semiImplicit, verlet, rungeKutta, implicit };
+   enum class Integrator { semiImplicit, verlet, rungeKutta, midpoint, forwardEuler, implicit };
    Integrator integrator = Integrator::semiImplicit;
    Beam beam = Beam::timoshenko;
    bool stepped = true; // bonds between unlike cells are stepped beams

@@ -24,7 +24,7 @@ inline std::array<double, 2> slipVelocity(const Assembly &assembly, const State 
 }
 
 /// Adds the contact's force and torque. `ahead` is the time since the friction springs were last moved (inner
-/// stages of Runge-Kutta); only with 0 may they slip. `dt` weights what is dissipated. Friction is Cundall
+/// stages of a step); only with 0 may they slip. `dt` weights what is dissipated. Friction is Cundall
 /// and Strack's: a tangential spring and damper whose force is cut at mu N, the spring being dragged along
 /// (Geotechnique 29, 1979).
 inline void addContact(const Assembly &assembly, State &state, std::int64_t i, double ahead, double dt,

@@ -123,17 +123,70 @@ double larger(double p, double q, double r)
    return 0.5 * (p + q) + std::sqrt(0.25 * (p - q) * (p - q) + r * r);
 }
 
-/// Largest stable step of an oscillator with squared frequency `w2` and damping rate `g` (2 zeta omega).
-double limitOf(double w2, double g, Options::Integrator integrator)
+/// An oscillator: its squared frequency, and the most and the least that its damping rate (2 zeta omega) can
+/// be.
+struct Oscillator
 {
+   double w2 = 0, most = 0, least = 0;
+};
+
+/// Explicit midpoint and forward Euler gain energy in every vibration that is damped too little, at any step:
+/// what the fastest may grow by in one.
+constexpr double kGrowth = 1e-5;
+
+/// Squared amplification of a step of forward Euler or midpoint, 1 + z and 1 + z + z^2/2, less 1: from
+/// z = dt (-g/2 + i sqrt(w2 - g^2/4)).
+double gained(Options::Integrator integrator, double w2, double g, double dt)
+{
+   if (integrator == Options::Integrator::forwardEuler)
+      return dt * (w2 * dt - g);
+   return dt * (-g + dt * (0.5 * g * g + dt * (-0.5 * g * w2 + dt * 0.25 * w2 * w2)));
+}
+
+/// Largest step at which the oscillator does not grow, nor any that is slower and damped in proportion: along
+/// these the gain changes its sign once.
+double limitOf(const Oscillator &of, Options::Integrator integrator)
+{
+   const auto &[w2, g, least] = of;
    if (!(w2 > 0) && !(g > 0))
       return std::numeric_limits<double>::infinity();
    // Runge-Kutta 4 holds within 2.78 of the origin on the left (2.828 on the imaginary, 2.785 on the real
    // axis).
+   const double farthest = 0.5 * g + std::sqrt(0.25 * g * g + w2);
    if (integrator == Options::Integrator::rungeKutta)
-      return 2.78 / (0.5 * g + std::sqrt(0.25 * g * g + w2));
+      return 2.78 / farthest;
+   if (integrator == Options::Integrator::midpoint || integrator == Options::Integrator::forwardEuler) {
+      double low = 0, high = 2 / farthest; // where both end on the real axis
+      for (int halving = 0; halving < 40; ++halving) {
+         const double middle = 0.5 * (low + high);
+         (gained(integrator, w2, least, middle) > 2 * kGrowth ? high : low) = middle;
+      }
+      return low;
+   }
    // Semi-implicit Euler, Verlet: w2 dt^2 + 2 g dt < 4.
    return 4 / (g + std::sqrt(g * g + 4 * w2));
+}
+
+/// Least damping in proportion to stiffness (s) of all that is elastic: what every vibration has at least.
+double leastDamping(const Assembly &assembly, const Couplings &couplings)
+{
+   if (!couplings.empty()) // their matrices are known by row sums only
+      return 0;
+   double least = std::numeric_limits<double>::infinity();
+   const auto look = [&](double k, double d) {
+      if (k > 0)
+         least = std::min(least, d / k);
+   };
+   for (std::int64_t i = 0; i < assembly.links; ++i) {
+      const BondConstants &k = assembly.constants[i];
+      for (int j = 0; j < 3; ++j) {
+         look(k.k[j], k.d[j]);
+         look(k.c[j], k.e[j]);
+      }
+   }
+   if (assembly.hasGround)
+      look(assembly.ground.stiffness, assembly.ground.damping);
+   return std::isfinite(least) ? least : 0;
 }
 
 /// Highest eigenvalues of one bond's stiffness and damping with the masses shared to it.
@@ -172,8 +225,10 @@ void bondEigenvalues(const Assembly &assembly, const Shares &shares, std::int64_
    }
 }
 
-/// The bound that couplings set, where it is below that of `out`.
-void boundCouplings(const Assembly &assembly, const Options &options, const Load &load, const Shares &shares,
+/// The bound that couplings set, where it is below that of `out`; `limit` takes squared frequency and
+/// damping.
+template<typename Limit>
+void boundCouplings(const Assembly &assembly, const Limit &limit, const Load &load, const Shares &shares,
                     double dt, StableStep &out)
 {
    for (std::int64_t i = 0; i < assembly.cells; ++i)
@@ -183,9 +238,8 @@ void boundCouplings(const Assembly &assembly, const Options &options, const Load
          if (!(own > 0))
             continue;
          const double share = (k < 3 ? shares.move(i, k) : shares.turn(i, k - 3)) / own;
-         const double limit = limitOf(stiffness * share, damping * share + assembly.drag, options.integrator);
-         if (limit < out.step)
-            out = {limit, -1, i};
+         if (const double step = limit(stiffness * share, damping * share); step < out.step)
+            out = {step, -1, i};
       }
 }
 
@@ -194,16 +248,19 @@ StableStep boundAt(const Assembly &assembly, const Options &options, const Coupl
 {
    const Load load = loadOf(assembly, couplings, dt);
    const Shares shares{assembly, load};
+   const double least = leastDamping(assembly, couplings);
+   const auto limit = [&](double w2, double g) {
+      return limitOf({w2, g + assembly.drag, least * w2 + assembly.drag}, options.integrator);
+   };
    StableStep out{std::numeric_limits<double>::infinity(), -1, -1};
    for (std::int64_t i = 0; i < assembly.links; ++i) {
       double w2 = 0, g = 0;
       bondEigenvalues(assembly, shares, i, dt, w2, g);
-      const double limit = limitOf(w2, g + assembly.drag, options.integrator);
-      if (limit < out.step)
-         out = {limit, i, -1};
+      if (const double step = limit(w2, g); step < out.step)
+         out = {step, i, -1};
    }
    if (!couplings.empty())
-      boundCouplings(assembly, options, load, shares, dt, out);
+      boundCouplings(assembly, limit, load, shares, dt, out);
    if (!assembly.hasGround)
       return out;
    const double k = assembly.ground.stiffness, c = assembly.ground.damping, own = weighed(k, c, dt);
@@ -212,9 +269,8 @@ StableStep boundAt(const Assembly &assembly, const Options &options, const Coupl
       for (int axis = 0; axis < 2 && assembly.hasFriction;
            ++axis) // the contact point moves and turns with the cell
          worst = std::max(worst, (shares.move(i, axis) + shares.turn(i, 1 - axis)) / own);
-      const double limit = limitOf(k * worst, c * worst + assembly.drag, options.integrator);
-      if (limit < out.step)
-         out = {limit, -1, i};
+      if (const double step = limit(k * worst, c * worst); step < out.step)
+         out = {step, -1, i};
    }
    return out;
 }
