@@ -76,6 +76,7 @@ private slots:
    void optionsReachTheSolver_data();
    void optionsReachTheSolver();
    void effectsNamesEntriesAndCells();
+   void effectsTellWhatTheyCost();
    void checkWarnsOfFreeBodies();
 
 private:
@@ -301,6 +302,28 @@ void SolveTest::effectsNamesEntriesAndCells()
    QVERIFY2(on.contains("driven: one curve drives a freedom on cell (3, 0, 0)"), run.out.constData());
    QVERIFY2(on.contains("loads: one load acts on cell (3, 0, 0)"), run.out.constData());
    QCOMPARE(on.size(), 3); // and rotation
+}
+
+/// The bond solver moves this row: what the loads add is measured, and what is off adds nothing.
+void SolveTest::effectsTellWhatTheyCost()
+{
+   const QByteArray bonds =
+       replaced(replaced(kRow, R"("test.balance")", R"("org.diatom_cad.solver.bonds")"), R"({"id": "a"})",
+                R"({"id": "a", "density_kg_m3": 1000, "youngs_modulus_Pa": 1e9, "poisson_ratio": 0.3})");
+   const auto costs = [&](const QStringList &options) {
+      const Outcome run = diatomRuns(QStringList{"effects", "-", "--json"} + options, bonds);
+      QTest::qVerify(run.exit == 0, "effects", run.err.constData(), __FILE__, __LINE__);
+      QMap<QString, QJsonValue> found;
+      for (const auto &row : run.json().array())
+         found[row.toObject()["name"].toString()] = row.toObject()["cost_ns"];
+      return found;
+   };
+   const auto measured = costs({}), none = costs({"--no-cost"});
+   QVERIFY(measured["loads"].isDouble());
+   QVERIFY(measured["loads"].toDouble() >= 0);
+   QCOMPARE(measured["gravity"].toDouble(-1), 0.0);
+   for (const QJsonValue &cost : none)
+      QVERIFY(cost.isNull());
 }
 
 void SolveTest::checkWarnsOfFreeBodies()

@@ -6,7 +6,8 @@ Motion::Motion(const sdk::SceneView &scene, const Assembly &assembly, const Coup
                const Options &options)
     : m_assembly(&assembly), m_couplings(&couplings), m_integrator(options.integrator),
       m_exact(options.exact), m_actuation(scene, assembly), m_drive(scene, assembly), m_state(assembly.cells),
-      m_rest(m_actuation.shape()), m_counted(m_rest), m_savedAccount{{}, m_actuation, {}, 0, 0, 0, 0}
+      m_rest(m_actuation.shape()), m_next(m_rest),
+      m_counted(couplings.empty() ? RestShape() : m_rest), m_savedAccount{}
 {
    if (assembly.hasFriction)
       for (Column &grip : m_state.grip)
@@ -37,14 +38,17 @@ void Motion::setCurves(std::span<const diatom_channel> channels)
 
 void Motion::save(double time)
 {
-   m_savedAccount = {m_rest, m_actuation, m_drive.reached(), m_dissipated, m_work, time, m_behind};
+   if (!m_settled)
+      settle(look());
+   m_savedAccount = {m_actuation.accepted(), m_drive.reached(), m_dissipated, m_work, time, m_behind};
 }
 
 double Motion::restore()
 {
-   m_rest = m_savedAccount.rest;
-   m_counted = m_savedAccount.rest;
-   m_actuation = m_savedAccount.actuation;
+   m_actuation.acceptAgain(m_savedAccount.rest, m_rest);
+   if (!m_couplings->empty())
+      m_counted = m_rest;
+   m_settled = true;
    m_drive.goBack(m_savedAccount.reached);
    m_dissipated = m_savedAccount.dissipated;
    m_work = m_savedAccount.work;
@@ -66,7 +70,7 @@ State Motion::caughtUp(const Acting &acting) const
 
 double Motion::workBy(const Acting &acting) const
 {
-   double work = m_work;
+   double work = this->work();
    for (const Drive::Led &led : m_drive.cells())
       for (int k = 0; k < 6; ++k)
          if (led.mask >> k & 1)
@@ -74,14 +78,18 @@ double Motion::workBy(const Acting &acting) const
    return work;
 }
 
-/// Takes the rest shape of a moment; returns what it adds to the energy of the accepted one.
-double Motion::restChange(double when)
+std::vector<Relation> Motion::look() const
 {
-   m_actuation.setRest(when, m_rest);
    readActuated();
-   double change = m_actuation.energyChange(*m_assembly, m_state, m_rest);
+   return m_actuation.look(*m_assembly, m_state);
+}
+
+/// What a rest shape adds to the energy of the accepted one.
+double Motion::restChange(const std::vector<Relation> &seen, const RestShape &rest) const
+{
+   double change = m_actuation.energyChange(*m_assembly, seen, rest);
    for (const auto &coupling : *m_couplings)
-      change += coupling->energy(m_state, &m_rest) - coupling->energy(m_state, &m_counted);
+      change += coupling->energy(m_state, &rest) - coupling->energy(m_state, &m_counted);
    return change;
 }
 
@@ -92,22 +100,36 @@ void Motion::acceptRest()
       m_counted = m_rest;
 }
 
+double Motion::unsettled() const { return m_settled ? 0 : 0.5 * restChange(look(), m_rest); }
+
+void Motion::settle(const std::vector<Relation> &seen)
+{
+   m_work += 0.5 * restChange(seen, m_rest);
+   acceptRest();
+   m_settled = true;
+}
+
 // The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
-// are before and after the step: second order, and exact for a jump while nothing moves.
+// are before and after the step: second order, and exact for a jump while nothing moves. Where they are after
+// a step they are before the next: each looks at the cells once.
 void Motion::step(const sdk::Call &call, double time, double dt)
 {
    const bool actuated = m_actuation.active();
    if (actuated) {
-      m_work += restChange(time); // first step, or new signals
-      acceptRest();
-      m_work += 0.5 * restChange(time + dt);
+      const auto seen = look();
+      if (!m_settled)
+         settle(seen);
       m_actuation.setRest(time, m_rest);
+      m_work += restChange(seen, m_rest); // first step, or new signals
+      acceptRest();
+      m_actuation.setRest(time + dt, m_next);
+      m_work += 0.5 * restChange(seen, m_next);
       restChanged();
    }
    advance(call, time, dt);
    if (actuated) {
-      m_work += 0.5 * restChange(time + dt);
-      acceptRest();
+      std::swap(m_rest, m_next);
+      m_settled = false;
    }
 }
 

@@ -29,8 +29,8 @@ public:
    }
    /// The actuated rest shape; null when nothing is driven.
    const RestShape *rest() const { return m_actuation.active() ? &m_rest : nullptr; }
-   double dissipated() const { return m_dissipated; } // J since the start
-   double work() const { return m_work; }             // J since the start
+   double dissipated() const { return m_dissipated; }   // J since the start
+   double work() const { return m_work + unsettled(); } // J since the start
    void addWork(double joule) { m_work += joule; }
 
    Acting acting() const;
@@ -59,7 +59,8 @@ protected:
           const Options &options);
 
    virtual void advance(const sdk::Call &call, double time, double dt) = 0;
-   /// Brings m_state up to date, where the state lives elsewhere; of the ends of actuated bonds alone.
+   /// Brings m_state up to date, where the state lives elsewhere; places and turns of the ends of actuated
+   /// bonds alone.
    virtual void readState() const {}
    virtual void readActuated() const {}
    virtual void restChanged() {}
@@ -77,17 +78,22 @@ protected:
    double m_behind = 0; // s, by which the velocities of semi-implicit Euler lag
 
 private:
-   double restChange(double when);
+   std::vector<Relation> look() const;
+   double restChange(const std::vector<Relation> &seen, const RestShape &rest) const;
    void acceptRest();
+   /// Work (J) of the last step's change of rest shape that is counted when the next one looks at the cells.
+   double unsettled() const;
+   void settle(const std::vector<Relation> &seen);
 
+   RestShape m_next;    // at the end of the step
    RestShape m_counted; // whose work is counted; of couplings
+   bool m_settled = true;
 
 protected:
    /// All that changes while stepping, but the state.
    struct Account
    {
-      RestShape rest;
-      Actuation actuation;
+      Actuation::Shapes rest;
       Column reached;
       double dissipated, work, time, behind;
    };

@@ -177,7 +177,8 @@ template<typename T>
 void VectorMotion<T>::readActuated() const
 {
    for (const std::int64_t cell : m_actuatedCells)
-      pull(cell);
+      for (int k = 0; k < 7; ++k) // places and turns
+         m_state.column(k)[cell] = static_cast<double>(column(k)[m_layout.place[cell]]);
 }
 
 template<typename T>

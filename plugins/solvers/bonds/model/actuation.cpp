@@ -120,7 +120,10 @@ void Actuation::setRest(double time, RestShape &rest) const
       rest.d[0][bond] = m_length[i++];
       rest.d[1][bond] = rest.d[2][bond] = rest.phi[0][bond] = rest.phi[1][bond] = rest.phi[2][bond] = 0;
    }
-   const auto volts = [&](int source) { return source < 0 ? 0.0 : m_signals[source].at(time); };
+   std::vector<double> voltage;
+   for (const Signal &signal : m_signals)
+      voltage.push_back(signal.at(time));
+   const auto volts = [&](int source) { return source < 0 ? 0.0 : voltage[source]; };
    int last = -1;
    double strain = 0;
    for (const Share &share : m_shares) {
@@ -138,19 +141,28 @@ void Actuation::setRest(double time, RestShape &rest) const
    }
 }
 
-double Actuation::energyChange(const Assembly &assembly, const State &state, const RestShape &rest) const
+std::vector<Relation> Actuation::look(const Assembly &assembly, const State &state) const
 {
+   std::vector<Relation> seen;
+   seen.reserve(m_bonds.size());
+   for (const std::int64_t bond : m_bonds)
+      seen.push_back(relate(endsOf(assembly, state, bond)));
+   return seen;
+}
+
+double Actuation::energyChange(const Assembly &assembly, const std::vector<Relation> &seen,
+                               const RestShape &rest) const
+{
+   const auto same = [](Vec3 a, Vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
    double change = 0;
    for (std::size_t i = 0; i < m_bonds.size(); ++i) {
       const std::int64_t bond = m_bonds[i];
-      const Vec3 d = rest.separation(bond), phi = rest.turn(bond), oldD = m_accepted[i][0],
-                 oldPhi = m_accepted[i][1];
-      if (d.x == oldD.x && d.y == oldD.y && d.z == oldD.z && phi.x == oldPhi.x && phi.y == oldPhi.y &&
-          phi.z == oldPhi.z)
+      const Vec3 d = rest.separation(bond), phi = rest.turn(bond);
+      const auto &[oldD, oldPhi] = m_accepted[i];
+      if (same(d, oldD) && same(phi, oldPhi))
          continue;
-      const Relation r = relate(endsOf(assembly, state, bond));
       const BondConstants &k = assembly.constants[bond];
-      change += bondEnergy(r, k, d, phi) - bondEnergy(r, k, oldD, oldPhi);
+      change += bondEnergy(seen[i], k, d, phi) - bondEnergy(seen[i], k, oldD, oldPhi);
    }
    return change;
 }
@@ -159,6 +171,19 @@ void Actuation::accept(const RestShape &rest)
 {
    for (std::size_t i = 0; i < m_bonds.size(); ++i)
       m_accepted[i] = {rest.separation(m_bonds[i]), rest.turn(m_bonds[i])};
+}
+
+void Actuation::acceptAgain(const Shapes &shapes, RestShape &rest)
+{
+   m_accepted = shapes;
+   for (std::size_t i = 0; i < m_bonds.size(); ++i) {
+      const auto &[d, phi] = m_accepted[i];
+      const double all[2][3] = {{d.x, d.y, d.z}, {phi.x, phi.y, phi.z}};
+      for (int k = 0; k < 3; ++k) {
+         rest.d[k][m_bonds[i]] = all[0][k];
+         rest.phi[k][m_bonds[i]] = all[1][k];
+      }
+   }
 }
 
 } // namespace bonds

@@ -34,11 +34,20 @@ public:
    void setSources(const sdk::Channel &sources);
 
    void setRest(double time, RestShape &rest) const;
-   /// Elastic energy (J) that changing the rest shape from the accepted one to `rest` would add, the cells
-   /// held where they are: the actuators' work.
-   double energyChange(const Assembly &assembly, const State &state, const RestShape &rest) const;
-   void accept(const RestShape &rest);
    const RestShape &shape() const { return m_initial; }
+
+   /// Rest shape of the driven bonds, one after another.
+   using Shapes = std::vector<std::array<Vec3, 2>>;
+   /// What the driven bonds see of their cells.
+   std::vector<Relation> look(const Assembly &assembly, const State &state) const;
+   /// Elastic energy (J) that changing the rest shape from the accepted one to `rest` would add, the cells
+   /// held where they were seen: the actuators' work.
+   double energyChange(const Assembly &assembly, const std::vector<Relation> &seen,
+                       const RestShape &rest) const;
+   void accept(const RestShape &rest);
+   const Shapes &accepted() const { return m_accepted; }
+   /// Accepts what was so before, and shows it in `rest`.
+   void acceptAgain(const Shapes &shapes, RestShape &rest);
 
 private:
    struct Driver
@@ -61,7 +70,7 @@ private:
    std::vector<Share> m_shares;
    std::vector<std::int64_t> m_bonds; // driven, ascending
    std::vector<double> m_length;
-   std::vector<std::array<Vec3, 2>> m_accepted; // rest shape whose work is counted
+   Shapes m_accepted; // whose work is counted
    RestShape m_initial;
 };
 
