@@ -11,6 +11,8 @@
 #include "explicit/moves-inl.h"
 #include "explicit/runs-inl.h"
 
+#include <hwy/cache_control.h>
+
 #include <algorithm>
 #include <cstring>
 
@@ -42,37 +44,55 @@ void addCrossings(const SweepWork<T> &work, const Chunk *chunk, T *atLo)
    }
 }
 
+template<typename T>
+HWY_INLINE void fetch(const T *first, std::size_t columns, std::size_t stride)
+{
+   for (std::size_t k = 0; k < columns; ++k)
+      for (std::size_t i = 0; i < kChunk; i += 64 / sizeof(T))
+         hwy::Prefetch(first + k * stride + i);
+}
+
+/// Brings what the next chunk touches first into the cache: places at the far ends of its longest bonds, and
+/// velocities. So many columns are more than the processor follows by itself.
+template<typename T>
+HWY_INLINE void fetchNext(const SweepWork<T> &work, std::size_t next, bool damped)
+{
+   fetch(work.state + next + work.span, 7, work.stride);
+   fetch(work.state + next + 7 * work.stride + (damped ? work.span : 0), 6, work.stride);
+   fetch(work.inverseMass + next, 1, 0);
+   fetch(work.inverseInertia + next, 1, 0);
+}
+
 template<bool kDamped, bool kFused, typename T>
-void tile(const SweepWork<T> &work, const Tile &one, const Move &move, std::vector<T> &room, SweepSums &sums)
+void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, SweepSums &sums)
 {
    const Lanes<T> d;
-   // Forces at the far ends wait in a window that moves on with the chunks.
-   const std::size_t reach = work.span + kChunk + 2 * kBlock;
-   const std::size_t all = one.cellsEnd - one.cells + 2 * kBlock, most = 3 * reach + 5 * kBlock;
-   const std::size_t hiStride = std::min(all, most);
-   room.assign(6 * hiStride, 0);
+   const Window window(one, work.span);
+   const std::size_t hiStride = window.stride;
+   std::fill_n(room, 6 * hiStride, T(0));
    HWY_ALIGN T atLo[6 * kChunk];
    LaneSums<T> lanes;
    std::uint32_t first = one.cells;
    for (std::uint32_t c = one.chunks; c < one.chunksEnd; ++c) {
       const Chunk *chunk = work.chunks + c;
       const std::uint32_t begin = chunk->cells, end = std::min(begin + kChunk, one.cellsEnd);
-      if (all > most && begin - first + reach > hiStride) {
+      if (window.moves && begin - first + window.reach > hiStride) {
          const std::size_t done = begin - first;
          for (int k = 0; k < 6; ++k) {
-            T *column = room.data() + k * hiStride;
+            T *column = room + k * hiStride;
             std::memmove(column, column + done, (hiStride - done) * sizeof(T));
             std::fill(column + (hiStride - done), column + hiStride, T(0));
          }
          first = begin;
       }
+      fetchNext(work, begin + kChunk, kDamped);
       std::memset(atLo, 0, sizeof atLo);
       for (std::uint32_t r = chunk[0].runs; r < chunk[1].runs; ++r)
-         addRun<kDamped, kFused>(d, work, work.runs[r], atLo, kChunk, room.data(), hiStride, begin, first,
+         addRun<kDamped, kFused>(d, work, work.runs[r], atLo, kChunk, room, hiStride, begin, first,
                                  lanes.power);
       if (chunk[0].crossings != chunk[1].crossings)
          addCrossings(work, chunk, atLo);
-      const T *atHi = room.data() + (begin - first);
+      const T *atHi = room + (begin - first);
       if (work.beforeKick)
          work.beforeKick(work.context, begin, end, atLo, atHi, hiStride);
       const std::size_t step = hn::Lanes(d);

@@ -58,6 +58,20 @@ struct Tile
    std::uint32_t cross = 0, crossEnd = 0; // runs to other tiles
 };
 
+/// Where forces at the far ends of a tile's bonds wait; it moves on with the chunks, unless it holds all.
+struct Window
+{
+   Window(const Tile &tile, std::size_t span) : reach(span + kChunk + 2 * kBlock)
+   {
+      const std::size_t all = tile.cellsEnd - tile.cells + 2 * kBlock, most = 3 * reach + 5 * kBlock;
+      moves = all > most;
+      stride = moves ? most : all;
+   }
+   std::size_t reach;  // places from a chunk's first cell to the last that its bonds reach
+   std::size_t stride; // of six columns
+   bool moves;
+};
+
 /// What a step does with the forces.
 struct Move
 {
@@ -112,8 +126,8 @@ struct SweepSums
 template<typename T>
 struct SweepKernel
 {
-   /// Forces of the tile's bonds, then its cells move.
-   void (*tile)(const SweepWork<T> &, const Tile &, const Move &, std::vector<T> &room, SweepSums &);
+   /// Forces of the tile's bonds, then its cells move. `room`: six columns of the tile's Window.
+   void (*tile)(const SweepWork<T> &, const Tile &, const Move &, T *room, SweepSums &);
    /// Forces of bonds to other tiles.
    void (*cross)(const SweepWork<T> &, const Tile &, SweepSums &);
    /// The tile's cells move on without forces.

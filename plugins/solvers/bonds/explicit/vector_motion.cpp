@@ -32,9 +32,9 @@ std::size_t strideFor(std::size_t places)
 }
 
 template<typename T>
-std::vector<T> converted(const std::vector<double> &from)
+PageVector<T> converted(const std::vector<double> &from)
 {
-   std::vector<T> out;
+   PageVector<T> out;
    out.reserve(from.size());
    for (const double value : from)
       out.push_back(static_cast<T>(value));
@@ -129,7 +129,12 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
       m_drivenPlaces.push_back({m_layout.place[led.cell], led, {}});
    std::sort(m_drivenPlaces.begin(), m_drivenPlaces.end(),
              [](const DrivenPlace &a, const DrivenPlace &b) { return a.place < b.place; });
-   m_rooms.resize(m_layout.tiles.size());
+   std::size_t room = 0;
+   for (const Tile &tile : m_layout.tiles) {
+      m_roomAt.push_back(room);
+      room += 6 * Window(tile, m_layout.span).stride;
+   }
+   m_rooms.resize(room);
    m_visits.resize(m_layout.tiles.size());
    m_sweepSums.resize(m_layout.tiles.size());
    VectorMotion::save(0);
@@ -288,7 +293,7 @@ void VectorMotion<T>::sweep(const sdk::Call &call, const Move &move, double weig
                visit->motion->gripMoves(visit->sums, begin, end, visit->move.drift);
             };
       }
-      m_kernel.tile(work, m_layout.tiles[i], move, m_rooms[i], m_sweepSums[i]);
+      m_kernel.tile(work, m_layout.tiles[i], move, m_rooms.data() + m_roomAt[i], m_sweepSums[i]);
    });
    for (std::size_t i = 0; i < m_layout.tiles.size(); ++i) {
       m_dissipated += weight * (m_sweepSums[i].power + m_sweepSums[i].drag);

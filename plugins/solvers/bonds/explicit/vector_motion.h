@@ -3,6 +3,7 @@
 
 #include "explicit/layout.h"
 #include "explicit/motion.h"
+#include "explicit/pages.h"
 #include "model/contact.h"
 
 #include <optional>
@@ -58,12 +59,13 @@ private:
    Layout m_layout;
    SweepKernel<T> m_kernel;
    SweepWork<T> m_sweep;
-   std::vector<T> m_columns, m_rates, m_inverseMass, m_inverseInertia, m_pool, m_frames, m_restShape, m_slots,
-       m_loadColumns, m_touching, m_start, m_sum, m_boxes;
+   PageVector<T> m_columns, m_rates, m_inverseMass, m_inverseInertia, m_pool, m_frames, m_restShape, m_slots,
+       m_loadColumns, m_touching, m_start, m_sum, m_boxes, m_savedColumns;
+   PageVector<T> m_rooms;             // of tiles, one after another
+   std::vector<std::size_t> m_roomAt; // of each tile
    std::vector<std::uint8_t> m_heldPlaces;
    std::vector<std::int64_t> m_actuatedCells;
-   std::vector<std::vector<T>> m_rooms; // of tiles
-   std::vector<Visit> m_visits;         // of tiles
+   std::vector<Visit> m_visits; // of tiles
    std::vector<SweepSums> m_sweepSums;
    struct DrivenPlace
    {
@@ -73,7 +75,6 @@ private:
    };
    std::vector<DrivenPlace> m_drivenPlaces; // ascending
    mutable bool m_stale = false;            // m_state is older than the columns
-   std::vector<T> m_savedColumns;
 };
 
 extern template class VectorMotion<float>;
