@@ -53,7 +53,7 @@ Status makePlugins(const Catalogue &catalogue, const fs::path &folder)
    if (!cube)
       return Error{ErrorCode::unsupported, "the cube lattice is not installed"};
    const std::string &id = cube->provided->id;
-   if (const Status folderMade = makeFolder(folder); !folderMade)
+   if (Status folderMade = makeFolder(folder); !folderMade)
       return folderMade;
    for (int i = 0; i < kPlugins; ++i) {
       const fs::path to = folder / fmt::format("plugin{}", i);
@@ -65,7 +65,7 @@ Status makePlugins(const Catalogue &catalogue, const fs::path &folder)
          json.replace(at, id.size(), own);
       if (error)
          return Error{ErrorCode::unwritable, fmt::format("{}: {}", to.string(), error.message())};
-      if (const Status written = writeFileAtomic(to / "plugin.json", json); !written)
+      if (Status written = writeFileAtomic(to / "plugin.json", json); !written)
          return written;
    }
    return {};

@@ -19,11 +19,11 @@ struct StabilityOptions
 
 Status writeStability(const StabilityStudy &study, const std::filesystem::path &folder)
 {
-   if (const Status made = makeFolder(folder); !made)
+   if (Status made = makeFolder(folder); !made)
       return made;
-   if (const Status table = writeFileAtomic(folder / "stability.csv", stabilityCsv(study)); !table)
+   if (Status table = writeFileAtomic(folder / "stability.csv", stabilityCsv(study)); !table)
       return table;
-   if (const Status page = writeFileAtomic(folder / "stability.md", stabilityMarkdown(study)); !page)
+   if (Status page = writeFileAtomic(folder / "stability.md", stabilityMarkdown(study)); !page)
       return page;
    return writeFileAtomic(folder / "stability.json", stabilityJson(study).dump(2) + "\n");
 }

@@ -12,7 +12,7 @@ namespace {
 Status apply(const RunOptions &options, Design &design)
 {
    for (const std::string &setting : options.settings)
-      if (const Status set = applySetting(setting, design); !set)
+      if (Status set = applySetting(setting, design); !set)
          return set;
    Setup &setup = design.setup;
    for (const auto &[name, value] :

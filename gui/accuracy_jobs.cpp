@@ -28,7 +28,7 @@ Result<double> lengthToProbe(const Subject &subject, const Job &job)
    });
    self = &limited;
    limited.setThreads(job.threads());
-   const auto seen = motionTime(subject, limited);
+   auto seen = motionTime(subject, limited);
    if (!seen && seen.error().code == ErrorCode::cancelled && !job.cancelled())
       return kUsualLength;
    return seen;

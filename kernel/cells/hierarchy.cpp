@@ -4,7 +4,6 @@
 #include "cells/hierarchy_summary.h"
 
 #include <algorithm>
-#include <ranges>
 
 namespace diatom {
 
@@ -83,9 +82,9 @@ Found Hierarchy::found(const std::vector<Placement> &path, Index local) const
    if (!path.empty())
       summary = m_summaries.at(path.back().definition).get();
    Found found{local, summary->body.cells.at(local), path};
-   for (const Placement &p : std::views::reverse(path)) {
-      found.cell = m_placing->turned(p, found.index, found.cell);
-      found.index = m_placing->place(p, found.index);
+   for (auto p = path.rbegin(); p != path.rend(); ++p) {
+      found.cell = m_placing->turned(*p, found.index, found.cell);
+      found.index = m_placing->place(*p, found.index);
    }
    return found;
 }
@@ -120,9 +119,9 @@ bool Hierarchy::visitIn(const Summary &summary, const std::vector<Placement> &ch
                         const std::function<bool(Index, Cell)> &visit) const
 {
    const auto toWorld = [&](Index i, Cell cell) {
-      for (const Placement &p : std::views::reverse(chain)) {
-         cell = m_placing->turned(p, i, cell);
-         i = m_placing->place(p, i);
+      for (auto p = chain.rbegin(); p != chain.rend(); ++p) {
+         cell = m_placing->turned(*p, i, cell);
+         i = m_placing->place(*p, i);
       }
       return !box.contains(i) || visit(i, cell);
    };

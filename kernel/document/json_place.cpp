@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 namespace diatom {
 
@@ -48,9 +47,9 @@ std::string JsonPlace::pointer() const
    for (const JsonPlace *place = this; place->m_parent; place = place->m_parent)
       chain.push_back(place);
    std::string text;
-   for (const JsonPlace *place : std::views::reverse(chain)) {
+   for (auto place = chain.rbegin(); place != chain.rend(); ++place) {
       text += '/';
-      text += place->m_key.data() ? escaped(place->m_key) : std::to_string(place->m_element);
+      text += (*place)->m_key.data() ? escaped((*place)->m_key) : std::to_string((*place)->m_element);
    }
    return text;
 }

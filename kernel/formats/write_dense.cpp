@@ -23,11 +23,11 @@ Status DenseCells::check(const Box &bounds)
 
 DenseCells::DenseCells(const Box &bounds) : m_bounds(bounds)
 {
-   using Json = nlohmann::ordered_json;
+   using Rows = nlohmann::ordered_json;
    const Index size = bounds.empty() ? Index{1, 1, 1} : bounds.max - bounds.min + Index{1, 1, 1};
-   const Json row(static_cast<std::size_t>(size.z), Json());
-   const Json plane(static_cast<std::size_t>(size.y), row);
-   m_cells = Json(static_cast<std::size_t>(size.x), plane);
+   const Rows row(static_cast<std::size_t>(size.z), Rows());
+   const Rows plane(static_cast<std::size_t>(size.y), row);
+   m_cells = Rows(static_cast<std::size_t>(size.x), plane);
 }
 
 nlohmann::ordered_json &DenseCells::at(Index i)

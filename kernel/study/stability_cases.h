@@ -17,6 +17,7 @@ struct Case
 
 std::vector<Case> undampedCases(); // keep energy and momentum
 std::vector<Case> settlingCases(); // come to rest, or keep step with what drives them
+std::vector<Case> implicitCases(); // do so at steps far beyond the explicit limit
 std::vector<Case> bendingCases();  // turns of 90 to 360 degrees
 std::vector<Case> limitCases();    // steps at, below and beyond the stable limit
 

@@ -94,8 +94,9 @@ double reachOf(const Simulation &simulation)
 
 std::string Settings::text() const
 {
-   return step > 0 ? fmt::format("{}, step {:g} s", integrator, step)
-                   : fmt::format("{}, {:g} of the limit", integrator, ofLimit);
+   const std::string name = precision == "f64" ? integrator : integrator + " " + precision;
+   return step > 0 ? fmt::format("{}, step {:g} s", name, step)
+                   : fmt::format("{}, {:g} of the limit", name, ofLimit);
 }
 
 Result<std::unique_ptr<Simulation>> begin(const Bench &bench, const Design &design, const Settings &settings)
@@ -105,7 +106,7 @@ Result<std::unique_ptr<Simulation>> begin(const Bench &bench, const Design &desi
       return lattice.error();
    const Subject subject{bench.catalogue, std::make_shared<const Hierarchy>(*lattice, design.model),
                          design.setup, 1};
-   Values values{{"integrator", settings.integrator}};
+   Values values{{"integrator", settings.integrator}, {"precision", settings.precision}};
    if (settings.force)
       values["force_step"] = 1.0;
    double step = settings.step;

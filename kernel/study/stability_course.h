@@ -28,6 +28,7 @@ struct Settings
    double ofLimit = 0.9; // step over the stable one
    double step = 0;      // s; 0 = by ofLimit
    bool force = false;   // also beyond the limit
+   std::string precision = "f64";
    std::string text() const;
 };
 

@@ -139,4 +139,40 @@ Design drivenRow(int cells, Waveform wave, double hertz, double strain, const Ma
    return design;
 }
 
+Design shakenHalves(double ratio)
+{
+   const Index size{12, 2, 2};
+   Material hard = rubber();
+   hard.id = hard.name = "hard";
+   hard.youngsModulus *= ratio;
+   Design design = halves(size, rubber(), hard);
+   shake(design, size, 1e-2 * soundSpeed(rubber()), 1);
+   return design;
+}
+
+Design shakenMetals()
+{
+   const Index size{12, 2, 2};
+   Design design = halves(size, steel(), aluminium());
+   shake(design, size, 1, 3);
+   return design;
+}
+
+Design spinningCube(double ofSound)
+{
+   const Index size{5, 5, 5};
+   Design design = block(size, rubber());
+   spin(design, size, ofSound * soundSpeed(rubber()) / (2.5 * kPitch));
+   return design;
+}
+
+Design releasedBeam()
+{
+   const Index size{40, 1, 1};
+   Design design = block(size, rubber());
+   hold(design, layer(size, 0, 0));
+   bendToArc(design, size.x, 1.0471975511965976);
+   return design;
+}
+
 } // namespace diatom::stability

@@ -37,4 +37,11 @@ void bendToArc(Design &design, int cells, double angle);
 /// A row of actuators along x between its two held ends, driven by a wave; wires run beside them.
 Design drivenRow(int cells, Waveform wave, double hertz, double strain, const Material &muscle);
 
+/// Scenes of several rows, free but for the beam. Halves 1 : `ratio` in stiffness; a cube whose rim moves at
+/// a part of the speed of sound; a beam of 40 cells let go from an arc of 60 degrees.
+Design shakenHalves(double ratio);
+Design shakenMetals();
+Design spinningCube(double ofSound);
+Design releasedBeam();
+
 } // namespace diatom::stability

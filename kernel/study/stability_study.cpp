@@ -17,8 +17,8 @@ using stability::Case;
 std::vector<Case> allCases()
 {
    std::vector<Case> all;
-   for (auto *some :
-        {stability::undampedCases, stability::settlingCases, stability::bendingCases, stability::limitCases})
+   for (auto *some : {stability::undampedCases, stability::implicitCases, stability::settlingCases,
+                      stability::bendingCases, stability::limitCases})
       for (Case &one : some())
          all.push_back(std::move(one));
    return all;

@@ -9,7 +9,6 @@
 #include "core/file.h"
 
 #include <random>
-#include <ranges>
 
 using namespace diatom;
 using test::boundary;
@@ -128,9 +127,9 @@ private slots:
                   for (int z = box.min.z; z <= box.max.z; ++z)
                      plain[{x, y, z}] = cell;
          }
-         for (const auto &[index, cell] : std::views::reverse(plain))
-            if (!cell.empty())
-               two.model.root.cells.set(index, cell);
+         for (auto at = plain.rbegin(); at != plain.rend(); ++at)
+            if (!at->second.empty())
+               two.model.root.cells.set(at->first, at->second);
          for (const bool packed : {false, true}) {
             const auto a = writeDesign(one, packed, Job()), b = writeDesign(two, packed, Job());
             DIATOM_VERIFY_OK(a);

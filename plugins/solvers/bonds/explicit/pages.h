@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdlib>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -17,7 +18,7 @@ template<typename T>
 struct PageAllocator
 {
    using value_type = T;
-   static constexpr std::size_t kPage = std::size_t{1} << 21, kLine = 64;
+   static constexpr std::size_t kPage = std::size_t{1} << 21;
 
    PageAllocator() = default;
    template<typename U>
@@ -26,21 +27,27 @@ struct PageAllocator
 
    T *allocate(std::size_t count)
    {
-      const bool large = count >= kPage / sizeof(T);
-      const std::size_t unit = large ? kPage : kLine;
-      if (count > (static_cast<std::size_t>(-1) / 2 - unit) / sizeof(T))
+      if (!large(count))
+         return std::allocator<T>().allocate(count);
+      if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
          throw std::bad_array_new_length();
-      const std::size_t bytes = (count * sizeof(T) + unit - 1) / unit * unit;
-      void *memory = std::aligned_alloc(unit, bytes);
+      const std::size_t bytes = (count * sizeof(T) + kPage - 1) / kPage * kPage;
+      void *memory = std::aligned_alloc(kPage, bytes);
       if (!memory)
          throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-      if (large)
-         madvise(memory, bytes, MADV_HUGEPAGE); // a wish: without, all works the same
+      madvise(memory, bytes, MADV_HUGEPAGE); // a wish: without, all works the same
 #endif
       return static_cast<T *>(memory);
    }
-   void deallocate(T *memory, std::size_t) noexcept { std::free(memory); }
+   void deallocate(T *memory, std::size_t count) noexcept
+   {
+      if (large(count))
+         std::free(memory);
+      else
+         std::allocator<T>().deallocate(memory, count);
+   }
+   static bool large(std::size_t count) { return count >= kPage / sizeof(T); }
    template<typename U>
    bool operator==(const PageAllocator<U> &) const
    {

@@ -321,4 +321,16 @@ std::array<double, 6> ImplicitMotion::energy() const
            m_work};
 }
 
+void ImplicitMotion::goBack(const Moment &moment)
+{
+   m_now = moment.now;
+   m_loading = moment.loading;
+   m_internal = moment.internal;
+   m_exerted = moment.exerted;
+   m_ground = moment.ground;
+   m_power = moment.power;
+   m_dissipated = moment.dissipated;
+   m_work = moment.work;
+}
+
 } // namespace bonds

@@ -48,6 +48,20 @@ public:
    /// kinetic, elastic, gravity, contact, dissipated, work; J
    std::array<double, 6> energy() const;
 
+   /// All that is read of a moment, to go back to once and for all: no steps follow.
+   struct Moment
+   {
+      Kinematics now;
+      Loading loading;
+      Vector internal, exerted, ground;
+      double power = 0, dissipated = 0, work = 0;
+   };
+   Moment moment() const
+   {
+      return {m_now, m_loading, m_internal, m_exerted, m_ground, m_power, m_dissipated, m_work};
+   }
+   void goBack(const Moment &moment);
+
 private:
    void start(const sdk::Call &call);
    StepNewton::End attempt(const sdk::Call &call, double h);

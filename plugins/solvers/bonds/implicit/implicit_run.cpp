@@ -66,7 +66,7 @@ void ImplicitRun::estimate(const Options &options, const sdk::SceneView &scene, 
 ImplicitRun::ImplicitRun(const Options &options, const sdk::Values &values, const sdk::SceneView &scene)
     : m_balance(scene, options),
       m_motion(m_balance, optionsFrom(values), firstStep(m_balance), startOf(scene, m_balance)),
-      m_readout(m_balance, {{"effort", "", 1, 6}})
+      m_readout(m_balance, {{"effort", "", 1, 6}}), m_good(m_motion.moment())
 {
    if (!options.exact)
       throw Failure(DIATOM_UNSUPPORTED, "implicit steps need the exact gradient: leave gradient at exact");
@@ -100,7 +100,15 @@ void ImplicitRun::reportFailure(const sdk::Call &call, double step, diatom_step_
 {
    m_failed = true;
    result.state = DIATOM_DIVERGED;
-   result.bad_cell = brokenCell(m_balance.assembly(), m_motion.motion().state);
+   const Assembly &assembly = m_balance.assembly();
+   const State &state = m_motion.motion().state;
+   const RestShape &rest = m_motion.loading().rest;
+   result.bad_cell = brokenCell(assembly, state);
+   const std::int64_t bond = worstBond(assembly, state, rest.d[0].empty() ? nullptr : &rest);
+   result.bad_link = bond < 0 ? -1 : assembly.link[bond];
+   if (grown())
+      m_motion.goBack(m_good);
+   result.time = m_motion.motion().time;
    call.report(DIATOM_ERROR,
                "no motion was found beyond " + text(m_motion.motion().time) + " s in steps of " + text(step) +
                    " s or shorter, and the last good state is kept: use a shorter step, --step auto, or more "
@@ -151,10 +159,13 @@ std::int32_t ImplicitRun::step(const sdk::Call &call, const diatom_step_request 
          m_motion.settle(call);
          return DIATOM_CANCELLED;
       }
-      if (end == ImplicitMotion::End::failed || (n % kLookEvery == 0 && grown())) {
+      const bool look = n % kLookEvery == 0;
+      if (end == ImplicitMotion::End::failed || (look && grown())) {
          reportFailure(call, chosen ? m_motion.motion().step : dt, result);
          return DIATOM_OK;
       }
+      if (look)
+         m_good = m_motion.moment();
       ++result.steps;
       result.step = m_motion.motion().step;
       if (n % kLookEvery == 0)

@@ -25,6 +25,7 @@ public:
 private:
    ImplicitMotion::End advance(const sdk::Call &call, const diatom_step_request &request, double step);
    bool grown();
+   /// Keeps the last good state: before energy came from nowhere.
    void reportFailure(const sdk::Call &call, double step, diatom_step_result &result);
 
    Balance m_balance;
@@ -33,6 +34,7 @@ private:
    // J: stored at the start; what a growth is held against: in motion at the start, most gone in since
    double m_start = 0, m_scale = 0, m_most = 0;
    bool m_failed = false;
+   ImplicitMotion::Moment m_good; // the last that was looked at and had not grown
 };
 
 } // namespace bonds
