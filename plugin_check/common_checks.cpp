@@ -157,7 +157,7 @@ Status createChanged(const Subject &subject,
    grown.more.fill(0xab);
    void *self = nullptr;
    void (*destroy)(void *) = nullptr;
-   const Status made = guardedCall(subject.provided->id, "create", Job(), [&](const diatom_call *call) {
+   Status made = guardedCall(subject.provided->id, "create", Job(), [&](const diatom_call *call) {
       diatom_call changed = *call;
       change(changed, grown.create);
       return rawCreate(table, subject.provided->interface, &changed, &grown.create, &self, &destroy);

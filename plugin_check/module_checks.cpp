@@ -2,6 +2,7 @@
 #include "plugin_check/checks.h"
 
 #include "core/clock.h"
+#include "core/sanitizers.h"
 #include "plugins/c_values.h"
 #include "plugins/instance.h"
 #include "plugins/module.h"
@@ -17,7 +18,7 @@ namespace diatom::check {
 
 namespace {
 
-constexpr double kLoadSeconds = 0.1;
+constexpr double kLoadSeconds = 0.1 * kSlowdown;
 
 std::shared_ptr<const Module> load(const Subject &subject, Findings &findings)
 {

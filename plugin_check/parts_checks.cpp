@@ -15,6 +15,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -116,8 +117,10 @@ Result<Decomposition> decompose(const Instance &instance, const PartMaker &maker
 {
    diatom_cells record = cells.record(spec);
    record.size = size;
-   if (size < static_cast<std::int64_t>(sizeof record))
-      record.lattice = reinterpret_cast<const char *>(std::uintptr_t{8}); // whoever reads it crashes
+   if (size < static_cast<std::int64_t>(sizeof record)) {
+      const std::uintptr_t nowhere = 8; // whoever reads it crashes
+      std::memcpy(&record.lattice, &nowhere, sizeof nowhere);
+   }
    PartBatches batches(cells, maker.types());
    const diatom_part_sink sink = batches.sink();
    const Status status = instance.call("decompose", Job(), [&](const diatom_call *call) {

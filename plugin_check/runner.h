@@ -1,6 +1,7 @@
 // One check at a time, each in a process of its own or, for a debugger, in this one.
 #pragma once
 
+#include "core/sanitizers.h"
 #include "plugin_check/checks.h"
 
 #include <filesystem>
@@ -22,7 +23,7 @@ struct Request
    std::filesystem::path folder;
    std::uint64_t seed = 0;
    std::vector<std::filesystem::path> designs;
-   double seconds = 60; // then it counts as hanging
+   double seconds = 60 * kSlowdown; // then it counts as hanging
 };
 
 /// In this process: runs the check on each of the plugin's things that it is for, and looks at what the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/job.h"
+#include "core/sanitizers.h"
 #include "plugins/catalogue.h"
 
 #include <cstdint>
@@ -50,7 +51,7 @@ std::int64_t bytesInUse();
 /// build's sanitizers own the memory.
 std::optional<std::int64_t> growthPerCall(int calls, const std::function<void()> &call);
 
-inline constexpr double kCancelSeconds = 0.2; // that a plugin may take to see a cancel
+inline constexpr double kCancelSeconds = 0.2 * kSlowdown; // that a plugin may take to see a cancel
 
 /// Seconds from the cancel, given after a moment, to the end of the work; nothing when it had ended before.
 std::optional<double> secondsToCancel(const std::function<void(const Job &)> &work);

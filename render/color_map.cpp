@@ -69,11 +69,11 @@ Legend fieldLegend(const std::string &name, const std::string &unit, double low,
    return legend;
 }
 
-Legend lengthLegend(std::string name, double highest)
+Legend lengthLegend(const std::string &name, double highest)
 {
    const bool micro = highest > 0 && highest < 0.5e-3;
    const double high = std::isfinite(highest) ? highest * (micro ? 1e6 : 1e3) : 0;
-   return fieldLegend(std::move(name), micro ? "um" : "mm", 0, high);
+   return fieldLegend(name, micro ? "um" : "mm", 0, high);
 }
 
 Magnitudes displacementMagnitudes(std::span<const double> position, std::span<const double> rest)

@@ -33,7 +33,7 @@ struct Legend
 Legend fieldLegend(const std::string &name, const std::string &unit, double low, double high);
 
 /// A legend for values in metres from 0 to `highest`; picks mm or um and round ticks. Zero range: one tick.
-Legend lengthLegend(std::string name, double highest);
+Legend lengthLegend(const std::string &name, double highest);
 
 /// Lengths of 3-vectors laid out x y z, and the largest of them.
 struct Magnitudes

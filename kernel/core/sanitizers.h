@@ -31,5 +31,7 @@ inline constexpr bool kThreadSanitizer = false;
 inline constexpr bool kMayFork = !kThreadSanitizer;
 /// Their shadows take more address space than any limit.
 inline constexpr bool kMayLimitMemory = !kAddressSanitizer && !kThreadSanitizer;
+/// What a time that something may take is multiplied by.
+inline constexpr int kSlowdown = kAddressSanitizer || kThreadSanitizer ? 10 : 1;
 
 } // namespace diatom

@@ -47,7 +47,7 @@ Result<TrialFinding> findingOf(const Candidate &candidate, Verdicts &verdicts, c
 {
    if (const auto known = verdicts.finding(candidate.library()))
       return *known;
-   const auto found = tryLibrary(candidate.manifest, job);
+   auto found = tryLibrary(candidate.manifest, job);
    if (found)
       verdicts.remember(candidate.library(), *found);
    return found;

@@ -57,7 +57,7 @@ Status trustLibrary(const std::string &hash, const std::string &id)
       if (one["sha256"] == hash)
          return {};
    list.push_back({{"id", id}, {"sha256", hash}});
-   if (const Status made = makeFolder(trustFile().parent_path()); !made)
+   if (Status made = makeFolder(trustFile().parent_path()); !made)
       return made;
    return writeFileAtomic(trustFile(), json{{"schema", kTrustSchema}, {"trusted", std::move(list)}}.dump(
                                            1, ' ', false, json::error_handler_t::replace) +

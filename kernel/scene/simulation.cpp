@@ -122,7 +122,7 @@ Status Simulation::advance(double until, const Job &job)
          return Error{ErrorCode::cancelled, fmt::format("cancelled at t = {} s", numberText(run.time()))};
       if (result.state == DIATOM_DIVERGED)
          return self.diverged(result);
-      if (const Status looked = self.lookAtEnergy(job); !looked)
+      if (Status looked = self.lookAtEnergy(job); !looked)
          return looked;
       job.progress(std::min(1.0, run.time() / std::max(until, self.goal)), "simulating");
       if (result.state == DIATOM_DONE)

@@ -194,7 +194,7 @@ Result<std::unique_ptr<SolverRun>> SolverRun::create(std::shared_ptr<const Catal
 Status SolverRun::listOutputs(const Job &job)
 {
    const diatom_outputs *list = nullptr;
-   const Status listed = m_solver->call("outputs", job, [&](const diatom_call *call) {
+   Status listed = m_solver->call("outputs", job, [&](const diatom_call *call) {
       return m_solver->table<diatom_solver>()->outputs(m_solver->self(), call, &list);
    });
    if (!listed)
@@ -218,7 +218,7 @@ Error SolverRun::broken(const char *function, const std::string &fault) const
 Status SolverRun::step(const diatom_step_request &request, diatom_step_result &result, const Job &job)
 {
    const auto before = Clock::now();
-   const Status stepped = m_solver->call("step", job, [&](const diatom_call *call) {
+   Status stepped = m_solver->call("step", job, [&](const diatom_call *call) {
       return m_solver->table<diatom_solver>()->step(m_solver->self(), call, &request, &result);
    });
    m_wall += secondsSince(before);

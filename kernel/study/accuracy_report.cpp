@@ -151,15 +151,15 @@ Chart accuracyChart(const AccuracyStudy &study)
 
 Status writeAccuracy(AccuracyStudy &study, const std::filesystem::path &folder)
 {
-   if (const Status made = makeFolder(folder); !made)
+   if (Status made = makeFolder(folder); !made)
       return made;
    if (!canPlot())
       study.notes.emplace_back("this build has no PLplot: there is no plot");
    else
       for (const char *name : {"accuracy.svg", "accuracy.png"})
-         if (const Status drawn = writePlot(accuracyChart(study), folder / name); !drawn)
+         if (Status drawn = writePlot(accuracyChart(study), folder / name); !drawn)
             return drawn;
-   if (const Status table = writeFileAtomic(folder / "accuracy.csv", accuracyCsv(study)); !table)
+   if (Status table = writeFileAtomic(folder / "accuracy.csv", accuracyCsv(study)); !table)
       return table;
    return writeFileAtomic(folder / "accuracy.json", accuracyJson(study).dump(2) + "\n");
 }

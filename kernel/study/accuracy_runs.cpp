@@ -160,13 +160,13 @@ Status AccuracyRuns::planMotion(std::size_t variant, const Job &job)
 
 Status AccuracyRuns::plan(const Job &job)
 {
-   if (const Status added = addVariants(job); !added)
+   if (Status added = addVariants(job); !added)
       return added;
    for (std::size_t variant = 0; variant < m_variants.size(); ++variant)
       if (isStill(m_plan.quantity))
          planStill(variant);
    for (std::size_t variant = 0; variant < m_variants.size(); ++variant)
-      if (const Status planned = planMotion(variant, job); !planned)
+      if (Status planned = planMotion(variant, job); !planned)
          return planned;
    double longest = 0;
    for (const AccuracyLadder &ladder : m_ladders)
@@ -265,7 +265,7 @@ Status AccuracyRuns::runAll(const Job &job)
          ++left;
          continue;
       }
-      const Status ran = run(one, job);
+      Status ran = run(one, job);
       if (!ran && ran.error().code == ErrorCode::cancelled)
          return ran;
       if (!ran)
@@ -285,7 +285,7 @@ Status AccuracyRuns::runAll(const Job &job)
          if (!one.done() || spent() + one.seconds.back() > budget)
             continue;
          job.progress(std::min(1.0, spent() / budget), "accuracy study, timing again");
-         if (const Status ran = run(one, job); !ran)
+         if (Status ran = run(one, job); !ran)
             return ran;
       }
    return {};

@@ -100,7 +100,7 @@ Status Race::run()
          Simulation &one = *m_simulations[k];
          const std::int64_t before = one.steps();
          const double start = one.wallSeconds();
-         if (const Status advanced = one.advance((turn + 1) * stretch, m_job); !advanced)
+         if (Status advanced = one.advance((turn + 1) * stretch, m_job); !advanced)
             return advanced;
          const double seconds = one.wallSeconds() - start;
          if (turn > 0) // the first warms up

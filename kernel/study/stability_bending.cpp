@@ -100,7 +100,7 @@ Case rolledInMotion(int degrees)
           if (!started)
              return started.error();
           Simulation &simulation = **started;
-          if (const Status moved = simulation.advance(25 / omega, bench.job); !moved)
+          if (Status moved = simulation.advance(25 / omega, bench.job); !moved)
              return moved;
           row.how = settings.text();
           row.cells = simulation.scene().cells();

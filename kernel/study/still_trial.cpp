@@ -51,7 +51,7 @@ Result<double> meanProbe(const SolverRun &run, const std::vector<std::int64_t> &
 {
    double sum = 0;
    for (const std::int64_t cell : cells) {
-      const auto value = run.probe(cell, channel, job);
+      auto value = run.probe(cell, channel, job);
       if (!value)
          return value;
       sum += *value;

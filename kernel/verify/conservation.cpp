@@ -55,7 +55,7 @@ Status freeCube(const Case &one, const Bench &bench, Findings &findings)
    const auto motion = motionOf(bench, scene, {});
    if (!motion)
       return motion.error();
-   if (const Status moved = (*motion)->advance(cube.at("t"), *bench.job); !moved)
+   if (Status moved = (*motion)->advance(cube.at("t"), *bench.job); !moved)
       return moved;
    const auto found = spinOf(**motion, 0, *bench.job);
    if (!found)
@@ -92,7 +92,7 @@ Status freeBox(const Case &one, const json &box, const std::string &path, const 
    turn.scale = 1;
    turn.words = "absolute";
    for (std::size_t i = 0; i < box.at("t").size(); ++i) {
-      if (const Status moved = (*motion)->advance(box.at("t")[i], *bench.job); !moved)
+      if (Status moved = (*motion)->advance(box.at("t")[i], *bench.job); !moved)
          return moved;
       const auto found = spinOf(**motion, 0, *bench.job);
       if (!found)
@@ -125,7 +125,7 @@ Status assemblyTop(const Case &one, const Bench &bench, Findings &findings)
    double momentum = 0;
    for (std::size_t i = 0; i < top.at("t").size(); ++i) {
       const double time = top.at("t")[i];
-      if (const Status moved = (*motion)->advance(time, *bench.job); !moved)
+      if (Status moved = (*motion)->advance(time, *bench.job); !moved)
          return moved;
       Vec3 omega = Vec3::Zero();
       Quat turn = Quat(0, 0, 0, 0);

@@ -203,7 +203,7 @@ void SpaceFrame::answer(const std::string &model, Findings &findings) const
 Status answerSpaceFrame(const Case &one, const Bench &bench, Findings &findings)
 {
    SpaceFrame frame(one, bench);
-   if (const Status built = frame.build(); !built)
+   if (Status built = frame.build(); !built)
       return built;
    for (const char *model : kModels)
       frame.answer(model, findings);

@@ -89,7 +89,7 @@ void AccuracyPanelTest::anEditWhileProbingBeginsAnew()
    QVERIFY(studio.panel().accuracy().busy());
    QVERIFY(!studio.panel().accuracy().probe());
    QVERIFY(studio.label("accuracy.status").startsWith("Measuring"));
-   QVERIFY(QTest::qWaitFor([&] { return !studio.panel().accuracy().busy(); }, 60000));
+   QVERIFY(QTest::qWaitFor([&] { return !studio.panel().accuracy().busy(); }, test::kPatience));
    QVERIFY(!studio.label("accuracy.status").startsWith("Measuring"));
    qInfo("longest stall of the event loop: %.0f ms", 1e3 * watch.longest());
 }
@@ -144,9 +144,9 @@ void AccuracyPanelTest::aToldTimeIsHeldAgainstTheRun()
    QCOMPARE(studio.panel().accuracy().probe()->until, 0.05);
    studio.view().setFocus();
    studio.key(Qt::Key_Space);
-   QTRY_VERIFY_WITH_TIMEOUT(studio.window.player().tally().steps > 0, 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(studio.window.player().tally().steps > 0, test::kPatience);
    const double step = studio.window.player().tally().step; // the last one may be shorter
-   QTRY_VERIFY_WITH_TIMEOUT(studio.window.player().finished(), 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(studio.window.player().finished(), test::kPatience);
    QTRY_VERIFY(studio.label("status.run").contains("finished"));
    const gui::RunTally tally = studio.window.player().tally();
    QCOMPARE(tally.time, 0.05);
@@ -162,7 +162,7 @@ void AccuracyPanelTest::aToldTimeIsHeldAgainstTheRun()
    qInfo("%s", qPrintable(account));
    studio.key(Qt::Key_Space); // once more from the start
    QTRY_VERIFY(!studio.window.player().finished());
-   QTRY_VERIFY_WITH_TIMEOUT(studio.window.player().finished(), 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(studio.window.player().finished(), test::kPatience);
 }
 
 QTEST_MAIN(AccuracyPanelTest)

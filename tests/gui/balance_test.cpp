@@ -25,7 +25,7 @@ public:
    {
       view().setFocus();
       key(Qt::Key_B, Qt::ControlModifier);
-      return QTest::qWaitFor([&] { return !window.busy(); }, 60000);
+      return QTest::qWaitFor([&] { return !window.busy(); }, test::kPatience);
    }
    std::map<Index, Vec3> places()
    {

@@ -77,7 +77,7 @@ public:
    bool idle()
    {
       return QTest::qWaitFor([&] { return !window.busy() && !window.findChild<QDialog *>("exportDialog"); },
-                             60000);
+                             test::kPatience);
    }
 };
 
@@ -259,7 +259,8 @@ void ExchangeTest::aMeshIsFilledWithCells()
    studio.type("import.material", "clay");
    QVERIFY(studio.button("import.fill")->isEnabled());
    studio.press("import.fill");
-   QTRY_VERIFY_WITH_TIMEOUT(!studio.window.busy() && studio.window.windowTitle().contains("box"), 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(!studio.window.busy() && studio.window.windowTitle().contains("box"),
+                            test::kPatience);
    QCOMPARE(studio.cells(), std::uint64_t(750));
    QCOMPARE(studio.window.session().design().model.lattice.pitch, 2 * 25.4e-3);
    QCOMPARE((*studio.window.session().design().model.materials)[0].id, std::string("clay"));
@@ -292,13 +293,13 @@ void ExchangeTest::partsAndStrutsAreShownUntilTheNextEdit()
    const QImage cells = studio.picture();
    studio.view().setFocus();
    studio.key(Qt::Key_P);
-   QTRY_VERIFY_WITH_TIMEOUT(studio.view().scene().surface(), 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(studio.view().scene().surface(), test::kPatience);
    QVERIFY(studio.settle());
    const QImage parts = studio.picture();
    QVERIFY(parts != cells);
    QVERIFY(studio.choose({"menu.view"}, "view.struts"));
    const auto before = studio.view().scene().surface();
-   QTRY_VERIFY_WITH_TIMEOUT(studio.view().scene().surface() != before, 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(studio.view().scene().surface() != before, test::kPatience);
    studio.leave();
    QVERIFY(studio.settle());
    QVERIFY(studio.picture() != parts && studio.picture() != cells);
@@ -310,7 +311,7 @@ void ExchangeTest::partsAndStrutsAreShownUntilTheNextEdit()
 
    // An edit drops them.
    studio.key(Qt::Key_P);
-   QTRY_VERIFY_WITH_TIMEOUT(studio.view().scene().surface(), 60000);
+   QTRY_VERIFY_WITH_TIMEOUT(studio.view().scene().surface(), test::kPatience);
    QVERIFY(studio.window.session().run("set-material", {{"id", "other"}}));
    QVERIFY(!studio.view().scene().surface());
 
@@ -338,7 +339,9 @@ void ExchangeTest::aReferenceMeshIsShownHiddenAndRemoved()
    const QImage without = studio.picture();
    auto *menu = studio.window.findChild<gui::ReferenceMenu *>("menu.references");
    QVERIFY(menu);
-   const auto read = [&] { return QTest::qWaitFor([&] { return !menu->busy(); }, 60000) && studio.settle(); };
+   const auto read = [&] {
+      return QTest::qWaitFor([&] { return !menu->busy(); }, test::kPatience) && studio.settle();
+   };
    menu->add(file("roof.obj").toStdString()); // what the file dialog gives
    QVERIFY(read());
    const auto &references = studio.window.session().design().referenceMeshes;
@@ -441,7 +444,7 @@ void ExchangeTest::aMachineProgramIsWritten()
    QTest::keyClicks(line, dir.filePath("tower")); // the suffix is the machine's
    QTest::keyClick(line, Qt::Key_Return);
    const QString file = dir.filePath("tower.ngc");
-   QVERIFY(QTest::qWaitFor([&] { return QFile::exists(file) && !studio.window.busy(); }, 60000));
+   QVERIFY(QTest::qWaitFor([&] { return QFile::exists(file) && !studio.window.busy(); }, test::kPatience));
    QVERIFY2(studio.message().startsWith("tower.ngc: "), qPrintable(studio.message()));
    QVERIFY2(studio.message().contains("parts placed, about"), qPrintable(studio.message()));
    // The bytes that the command line writes.

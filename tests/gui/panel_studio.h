@@ -38,7 +38,7 @@ public:
       QTest::mouseClick(tabs, Qt::LeftButton, {}, tabs->tabRect(page).center());
       return panel().currentIndex() == page;
    }
-   bool probed(int timeout = 60000)
+   bool probed(int timeout = test::kPatience)
    {
       return QTest::qWaitFor([&] { return panel().accuracy().probe() && !panel().accuracy().busy(); },
                              timeout);

@@ -99,7 +99,7 @@ private slots:
           studio
               .label("effect.gravity.cost") // noise may make it less than nothing, which is said in words
               .contains(QRegularExpression("^cost ([0-9.]+ ns|too small to measure)$")),
-          60000);
+          test::kPatience);
       QCOMPARE(studio.label("effect.ground.cost"), QString("cost unknown")); // off: nothing to measure
    }
 

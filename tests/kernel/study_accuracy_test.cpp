@@ -24,7 +24,7 @@ AccuracySample sample(const std::string &id)
 Result<AccuracyStudy> studied(const AccuracySample &one, double budget)
 {
    AccuracyRequest request = one.request;
-   request.budget = budget;
+   request.budget = budget * kSlowdown;
    request.repeats = 1;
    const Job job;
    return studyAccuracy(test::catalogue(), one.design, request, job);

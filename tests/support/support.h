@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/job.h"
+#include "core/sanitizers.h"
 #include "plugins/catalogue.h"
 
 #include <QTemporaryDir>
@@ -13,6 +14,9 @@
 #include <string>
 
 namespace diatom::test {
+
+/// ms that a window may take for what is asked of it.
+inline constexpr int kPatience = 60'000 * kSlowdown;
 
 inline std::filesystem::path sourceDir()
 {

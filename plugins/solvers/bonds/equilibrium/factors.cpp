@@ -161,7 +161,7 @@ Fill countFill(const BlockMatrix &matrix, const std::vector<std::int32_t> &order
 }
 
 std::unique_ptr<Inverse> makeFactors(const BlockMatrix &pattern, const Vector &free,
-                                     std::vector<std::int32_t> order)
+                                     const std::vector<std::int32_t> &order)
 {
    return std::make_unique<Factors>(pattern, free, order);
 }
@@ -170,10 +170,10 @@ std::unique_ptr<Inverse> makeInverse(const BlockMatrix &pattern, const Vector &f
 {
    constexpr double kMostBlocks = 3e6;     // some 1.5 GB
    constexpr double kMostOperations = 2e9; // a second or so
-   std::vector<std::int32_t> order = eliminationOrder(pattern);
+   const std::vector<std::int32_t> order = eliminationOrder(pattern);
    const Fill fill = countFill(pattern, order, kMostBlocks);
    if (fill.operations <= kMostOperations)
-      return makeFactors(pattern, free, std::move(order));
+      return makeFactors(pattern, free, order);
    return makeMultigrid(pattern, free, rest);
 }
 

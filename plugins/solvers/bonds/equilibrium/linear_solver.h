@@ -37,7 +37,7 @@ std::vector<std::int32_t> eliminationOrder(const BlockMatrix &matrix);
 
 /// `free` is 1 where free, 0 where held.
 std::unique_ptr<Inverse> makeFactors(const BlockMatrix &pattern, const Vector &free,
-                                     std::vector<std::int32_t> order);
+                                     const std::vector<std::int32_t> &order);
 std::unique_ptr<Inverse> makeMultigrid(const BlockMatrix &pattern, const Vector &free, const Places &rest);
 /// Factors while they take a second or so, since they know unstable directions and do not mind contrast, else
 /// multigrid, which is faster from some 500 dense cells on (12^3: 1.2 s by factors; 13^3: 0.06 s by

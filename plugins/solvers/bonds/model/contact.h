@@ -53,8 +53,8 @@ inline void addContact(const Assembly &assembly, State &state, std::int64_t i, d
       f[j] = -k * (state.grip[j][i] + ahead * v[j]) - ground.damping * v[j];
    const double size = std::sqrt(f[0] * f[0] + f[1] * f[1]), most = ground.friction * normal;
    if (size > most) {
-      for (int j = 0; j < 2; ++j)
-         f[j] *= most / size;
+      for (double &one : f)
+         one *= most / size;
       if (ahead == 0)
          for (int j = 0; j < 2; ++j) {
             const double held = -f[j] / k;

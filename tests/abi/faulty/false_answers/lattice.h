@@ -4,6 +4,7 @@
 #include <diatom/lattice.hpp>
 
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace false_answers {
@@ -41,10 +42,10 @@ struct FalseLattice
    {
       return diatom::sdk::guarded(call, [&] {
          auto &lattice = *static_cast<FalseLattice *>(self);
-         const diatom_motif *right = nullptr;
-         if (Right::motif(lattice.right, call, &right) != DIATOM_OK)
+         const diatom_motif *spotless = nullptr;
+         if (Right::motif(lattice.right, call, &spotless) != DIATOM_OK)
             throw diatom::sdk::Failure(DIATOM_INTERNAL, "no motif");
-         lattice.record = *right;
+         lattice.record = *spotless;
          lattice.spoil();
          *record = &lattice.record;
       });
@@ -74,8 +75,11 @@ struct FalseLattice
          record.supercell_longest = -3;
          record.supercell_default = 2;
       } else if (fault == "crash") {
-         const volatile std::uintptr_t nowhere = 8; // not 0, which UBSan ends in a way of its own
-         *reinterpret_cast<volatile int *>(nowhere) = 1;
+         const volatile std::uintptr_t hidden = 8; // not 0, which UBSan ends in a way of its own
+         const std::uintptr_t nowhere = hidden;
+         volatile int *at = nullptr;
+         std::memcpy(&at, &nowhere, sizeof at);
+         *at = 1;
       } else if (fault == "throws") {
          throw std::runtime_error("the motif is lost");
       }

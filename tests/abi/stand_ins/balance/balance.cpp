@@ -94,8 +94,10 @@ private:
          return m_reaction[static_cast<std::size_t>(6 * row + k)];
       case 3:
          return kEigenvalues[static_cast<std::size_t>(row)];
-      default: // mode, cell and freedom as digits
-         return static_cast<double>(100 * (row / m_cells) + 10 * (row % m_cells) + k);
+      default: { // mode, cell and freedom as digits
+         const std::int64_t mode = row / m_cells, cell = row % m_cells;
+         return static_cast<double>(100 * mode + 10 * cell + k);
+      }
       }
    }
 
