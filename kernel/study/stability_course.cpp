@@ -61,6 +61,7 @@ public:
       const double through = std::max(end.dissipated, m_course.mostEnergy);
       const double balance = stored(end) + end.dissipated - end.work - stored(m_course.start);
       m_course.unaccounted = through > 0 ? std::abs(balance) / through : 0;
+      m_course.travel = m_momentum.linear.norm() / m_scale.mass * m_simulation.time();
       const double kinetic = m_course.mostKinetic;
       m_course.linear = kinetic > 0 ? m_linear / m_scale.linear(kinetic) : 0;
       m_course.angular = kinetic > 0 ? m_angular / m_scale.angular(kinetic) : 0;

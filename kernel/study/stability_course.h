@@ -38,6 +38,7 @@ struct Course
    std::int64_t cells = 0, steps = 0;
    double step = 0, time = 0;      // s
    double mass = 0;                // kg
+   double travel = 0;              // m: how far the centre of mass goes
    Energy start, end;              //
    double mostEnergy = 0;          // J, stored less the gravity at the start
    double mostKinetic = 0;         // J
