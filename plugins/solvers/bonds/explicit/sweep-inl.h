@@ -44,24 +44,34 @@ void addCrossings(const SweepWork<T> &work, const Chunk *chunk, T *atLo)
    }
 }
 
+/// Brings what a later chunk touches first into the cache: places at the far ends of its longest bonds,
+/// velocities and masses. So many columns are more than the processor follows by itself, and asked for all at
+/// once they fill its queue of misses: a few go with each run.
 template<typename T>
-HWY_INLINE void fetch(const T *first, std::size_t columns, std::size_t stride)
+class Ahead
 {
-   for (std::size_t k = 0; k < columns; ++k)
-      for (std::size_t i = 0; i < kChunk; i += 64 / sizeof(T))
-         hwy::Prefetch(first + k * stride + i);
-}
+public:
+   Ahead(const SweepWork<T> &work, std::size_t first, std::uint32_t runs, bool damped)
+       : m_each((kColumns + runs) / (runs + 1))
+   {
+      const std::size_t far = first + work.span;
+      for (std::size_t k = 0; k < 13; ++k)
+         m_columns[k] = work.state + k * work.stride + (k < 7 || damped ? far : first);
+      m_columns[13] = work.inverseMass + first;
+      m_columns[14] = work.inverseInertia + first;
+   }
+   HWY_INLINE void fetchSome()
+   {
+      for (const std::size_t end = std::min(m_at + m_each, kColumns); m_at < end; ++m_at)
+         for (std::size_t i = 0; i < kChunk; i += 64 / sizeof(T))
+            hwy::Prefetch(m_columns[m_at] + i);
+   }
 
-/// Brings what the next chunk touches first into the cache: places at the far ends of its longest bonds, and
-/// velocities. So many columns are more than the processor follows by itself.
-template<typename T>
-HWY_INLINE void fetchNext(const SweepWork<T> &work, std::size_t next, bool damped)
-{
-   fetch(work.state + next + work.span, 7, work.stride);
-   fetch(work.state + next + 7 * work.stride + (damped ? work.span : 0), 6, work.stride);
-   fetch(work.inverseMass + next, 1, 0);
-   fetch(work.inverseInertia + next, 1, 0);
-}
+private:
+   static constexpr std::size_t kColumns = 15;
+   std::size_t m_each, m_at = 0;
+   const T *m_columns[kColumns];
+};
 
 template<bool kDamped, bool kFused, typename T>
 void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, SweepSums &sums)
@@ -85,11 +95,14 @@ void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, 
          }
          first = begin;
       }
-      fetchNext(work, begin + kChunk, kDamped);
+      Ahead<T> ahead(work, begin + 2 * kChunk, chunk[1].runs - chunk[0].runs, kDamped);
       std::memset(atLo, 0, sizeof atLo);
-      for (std::uint32_t r = chunk[0].runs; r < chunk[1].runs; ++r)
+      for (std::uint32_t r = chunk[0].runs; r < chunk[1].runs; ++r) {
+         ahead.fetchSome();
          addRun<kDamped, kFused>(d, work, work.runs[r], atLo, kChunk, room, hiStride, begin, first,
                                  lanes.power);
+      }
+      ahead.fetchSome();
       if (chunk[0].crossings != chunk[1].crossings)
          addCrossings(work, chunk, atLo);
       const T *atHi = room + (begin - first);
