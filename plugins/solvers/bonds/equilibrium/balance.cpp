@@ -1,5 +1,4 @@
-// Each cell adds up its own bonds, in bond order: a bond is evaluated at both its ends, and nothing depends
-// on the number of threads.
+// Each bond once, then each cell adds up its own in bond order: nothing depends on the number of threads.
 #include "equilibrium/balance.h"
 
 #include "model/bond_ends.h"
@@ -94,42 +93,43 @@ std::string Balance::name(std::int64_t cell) const
    return "(" + std::to_string(at[0]) + ", " + std::to_string(at[1]) + ", " + std::to_string(at[2]) + ")";
 }
 
-double Balance::cellForces(std::int64_t cell, const State &state, const RestShape &rest, bool rates,
-                           double *out, Measure &measure) const
+double Balance::bondLoad(std::int64_t bond, const State &state, const RestShape &rest, bool rates,
+                         BondLoad &out, Measure &measure) const
 {
-   double power = 0;
-   std::fill_n(out, 6, 0.0);
-   for (std::int64_t e = m_assembly.first[cell]; e < bondsEnd(cell); ++e) {
-      const std::int64_t bond = m_assembly.bondsOf[e] / 2;
-      const bool atB = (m_assembly.bondsOf[e] & 1) != 0;
-      const Mat3 frame = m_assembly.frameOf(bond);
-      const BondConstants &k = m_assembly.constants[bond];
-      const BondPoint r = pointOf(m_assembly, state, rest, bond, frame, rates);
-      const EndForces f = endForces(r);
-      const Vec3 torque = atB ? f.torqueB : f.torqueA;
-      put(out, transposed(frame, f.force), atB ? -1 : 1);
-      put(out + 3, transposed(frame, torque), 1);
-      measure.atWork = std::max({measure.atWork, norm(f.force), norm(torque) / m_pitch});
-      measure.rounding = std::max(measure.rounding, roundingOf(m_assembly, state, bond));
-      if (!rest.d[0].empty())
-         measure.atWork = std::max(measure.atWork, blockedForce(k, stretchOf(m_assembly, rest, bond),
-                                                                turnOf(rest, bond), m_assembly.length[bond]));
-      if (rates && !atB)
-         power += dampedPower(r, k, bondEnds<true>(m_assembly, state, bond, frame));
-   }
-   return power;
+   const Mat3 frame = m_assembly.frameOf(bond);
+   const BondConstants &k = m_assembly.constants[bond];
+   const BondPoint r = pointOf(m_assembly, state, rest, bond, frame, rates);
+   const EndForces f = endForces(r);
+   out = {transposed(frame, f.force), transposed(frame, f.torqueA), transposed(frame, f.torqueB)};
+   measure.atWork =
+       std::max({measure.atWork, norm(f.force), norm(f.torqueA) / m_pitch, norm(f.torqueB) / m_pitch});
+   measure.rounding = std::max(measure.rounding, roundingOf(m_assembly, state, bond));
+   if (!rest.d[0].empty())
+      measure.atWork = std::max(measure.atWork, blockedForce(k, stretchOf(m_assembly, rest, bond),
+                                                             turnOf(rest, bond), m_assembly.length[bond]));
+   return rates ? dampedPower(r, k, bondEnds<true>(m_assembly, state, bond, frame)) : 0;
 }
 
 double Balance::internal(const sdk::Call &call, const State &state, const Loading &loading, bool rates,
                          Vector &out, Measure &measure) const
 {
-   out.resize(6 * m_assembly.cells);
-   const auto pieces = static_cast<std::size_t>(piecesOf(m_assembly.cells));
+   const auto pieces = static_cast<std::size_t>(piecesOf(m_assembly.links));
    Column power(pieces, 0);
    std::vector<Measure> largest(pieces);
-   forCells(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t piece) {
+   m_bondLoads.resize(static_cast<std::size_t>(m_assembly.links));
+   forPieces(call, m_assembly.links, [&](std::int64_t begin, std::int64_t end, std::int64_t piece) {
       for (std::int64_t i = begin; i < end; ++i)
-         power[piece] += cellForces(i, state, loading.rest, rates, out.data() + 6 * i, largest[piece]);
+         power[piece] += bondLoad(i, state, loading.rest, rates, m_bondLoads[i], largest[piece]);
+   });
+   out.setZero(6 * m_assembly.cells);
+   forPieces(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
+      for (std::int64_t e = m_assembly.first[begin], cell = begin; cell < end; ++cell)
+         for (double *to = out.data() + 6 * cell; e < m_assembly.first[cell + 1]; ++e) {
+            const BondLoad &load = m_bondLoads[m_assembly.bondsOf[e] / 2];
+            const bool atB = (m_assembly.bondsOf[e] & 1) != 0;
+            put(to, load.force, atB ? -1 : 1);
+            put(to + 3, atB ? load.torqueB : load.torqueA, 1);
+         }
    });
    double total = 0;
    for (std::size_t i = 0; i < pieces; ++i) {
@@ -239,7 +239,7 @@ void Balance::cellStiffness(std::int64_t cell, const State &state, const RestSha
 void Balance::stiffness(const sdk::Call &call, const State &state, const Loading &loading,
                         double dampingOverTime, BlockMatrix &out) const
 {
-   forCells(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
+   forPieces(call, m_assembly.cells, [&](std::int64_t begin, std::int64_t end, std::int64_t) {
       for (std::int64_t i = begin; i < end; ++i) {
          out.clearRow(i);
          cellStiffness(i, state, loading.rest, dampingOverTime, out);

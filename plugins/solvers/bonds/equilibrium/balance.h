@@ -52,7 +52,8 @@ public:
    const Actuation &actuation() const { return m_actuation; }
 
    /// Force and moment of bonds and couplings on every cell; `rates` counts damping. Returns the power that
-   /// damping takes (W); `measure` gets the largest of the single forces and their rounding.
+   /// damping takes (W); `measure` gets the largest of the single forces and their rounding. One thread at a
+   /// time: it works in the object's own room.
    double internal(const sdk::Call &call, const State &state, const Loading &loading, bool rates, Vector &out,
                    Measure &measure) const;
    /// Gravity, loads and ground.
@@ -77,8 +78,14 @@ public:
 private:
    void setLoads(const sdk::Channel &loads);
    std::int64_t bondsEnd(std::int64_t cell) const { return m_assembly.first[cell + 1]; }
-   double cellForces(std::int64_t cell, const State &state, const RestShape &rest, bool rates, double *out,
-                     Measure &measure) const;
+   /// What a bond does to its cells, in world axes.
+   struct BondLoad
+   {
+      Vec3 force; // on a; b gets the opposite
+      Vec3 torqueA, torqueB;
+   };
+   double bondLoad(std::int64_t bond, const State &state, const RestShape &rest, bool rates, BondLoad &out,
+                   Measure &measure) const;
    void cellStiffness(std::int64_t cell, const State &state, const RestShape &rest, double dampingOverTime,
                       BlockMatrix &out) const;
 
@@ -89,6 +96,7 @@ private:
    Supports m_supports;
    Couplings m_couplings;
    Column m_force;
+   mutable std::vector<BondLoad> m_bondLoads; // room for internal()
 };
 
 /// Rotation vector of a unit quaternion, the shorter of the two.

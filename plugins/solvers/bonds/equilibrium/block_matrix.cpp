@@ -41,7 +41,7 @@ void BlockMatrix::clearRow(std::int64_t row)
 void BlockMatrix::multiply(const sdk::Call &call, const Vector &x, Vector &y) const
 {
    y.resize(6 * rows());
-   forCells(call, rows(), [&](std::int64_t from, std::int64_t to, std::int64_t) {
+   forPieces(call, rows(), [&](std::int64_t from, std::int64_t to, std::int64_t) {
       for (std::int64_t i = from; i < to; ++i) {
          Eigen::Matrix<double, 6, 1> sum = Eigen::Matrix<double, 6, 1>::Zero();
          for (std::int64_t e = begin(i); e < end(i); ++e)

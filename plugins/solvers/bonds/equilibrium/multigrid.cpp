@@ -137,7 +137,7 @@ void Multigrid::compute(const sdk::Call &call, const BlockMatrix &matrix, const 
    placeAggregates(places);
    for (std::int64_t g = 0; g < m_coarse.rows(); ++g)
       m_coarse.clearRow(g);
-   forCells(call, matrix.rows(), [&](std::int64_t from, std::int64_t to, std::int64_t) {
+   forPieces(call, matrix.rows(), [&](std::int64_t from, std::int64_t to, std::int64_t) {
       for (std::int64_t i = from; i < to; ++i) {
          const auto free = m_free.segment<6>(6 * i);
          for (std::int64_t e = matrix.begin(i); e < matrix.end(i); ++e)

@@ -1,4 +1,4 @@
-// Work on all cells at once, cut so that the cuts do not depend on the number of threads.
+// Work on all cells or bonds at once, cut so that the cuts do not depend on the number of threads.
 #pragma once
 
 #include <diatom/solver.hpp>
@@ -10,24 +10,24 @@ namespace bonds {
 
 namespace sdk = diatom::sdk;
 
-inline constexpr std::int64_t kCellsPerPiece = 256;
+inline constexpr std::int64_t kPiece = 256;
 /// Waking threads costs more than smaller scenes take.
-inline constexpr std::int64_t kCellsForTwo = 1000;
+inline constexpr std::int64_t kWorthThreads = 1000;
 
-inline std::int64_t piecesOf(std::int64_t cells) { return (cells + kCellsPerPiece - 1) / kCellsPerPiece; }
+inline std::int64_t piecesOf(std::int64_t count) { return (count + kPiece - 1) / kPiece; }
 
-/// body(begin, end, piece) for all cells.
+/// body(begin, end, piece) for all of them.
 template<typename Body>
-void forCells(const sdk::Call &call, std::int64_t cells, const Body &body)
+void forPieces(const sdk::Call &call, std::int64_t count, const Body &body)
 {
    auto run = [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; i += kCellsPerPiece)
-         body(i, std::min(i + kCellsPerPiece, end), i / kCellsPerPiece);
+      for (std::int64_t i = begin; i < end; i += kPiece)
+         body(i, std::min(i + kPiece, end), i / kPiece);
    };
-   if (cells < kCellsForTwo)
-      run(0, cells);
+   if (count < kWorthThreads)
+      run(0, count);
    else
-      call.parallelFor(cells, kCellsPerPiece, run);
+      call.parallelFor(count, kPiece, run);
 }
 
 } // namespace bonds

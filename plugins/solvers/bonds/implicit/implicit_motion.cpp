@@ -105,12 +105,12 @@ StepNewton::End ImplicitMotion::attempt(const sdk::Call &call, double h)
    if (!m_started)
       start(call);
    m_nextLoading = m_balance->loadingAt(m_now.time + h);
-   m_from = m_now;
-   m_equations.begin(m_from, h, m_nextLoading);
+   m_equations.begin(m_now, h, m_nextLoading);
    if (m_jump.size() > 0) {
       // What the step is too long for answers a jump at once: as accelerations it would overshoot.
       m_newton.prepare(call, m_equations, m_next);
       const Vector jump = resolved(call, m_jump);
+      m_from = m_now;
       m_from.rate += jump;
       m_from.carried += jump;
       m_equations.begin(m_from, h, m_nextLoading);
@@ -174,7 +174,7 @@ double ImplicitMotion::relativeError(const sdk::Call &call)
 {
    const double h = m_equations.step();
    const AlphaMethod &method = m_equations.method();
-   const Vector change = (m_next.rate - m_from.rate) / h;
+   const Vector change = (m_next.rate - m_equations.from().rate) / h;
    m_speed = std::max(m_speed, m_newton.largest(m_increment) / h);
    m_rush = std::max(m_rush, m_newton.largest(m_next.trend));
    m_reach = std::max(m_reach, reachOf(m_next.state, m_balance->pitch()));

@@ -47,6 +47,10 @@ void StepEquations::begin(const Kinematics &from, double h, const Loading &loadi
    m_loading = &loading;
    m_step = h;
    m_carried = carriedFor(from, h);
+   const std::vector<Driven> &driven = m_balance->supports().driven();
+   m_slopes.resize(driven.size());
+   for (std::size_t i = 0; i < driven.size(); ++i)
+      m_slopes[i] = slope(driven[i]);
 }
 
 /// Of a driven degree of freedom's curve about the end of the step; second order where it is smooth.
@@ -109,9 +113,10 @@ void StepEquations::move(const Vector &increment, Kinematics &to) const
          to.state.column(7 + k)[i] = speed;
          to.trend[at] = (speed - v) / h;
       }
-   for (const Driven &driven : m_balance->supports().driven()) {
+   for (std::size_t i = 0; i < m_slopes.size(); ++i) {
+      const Driven &driven = m_balance->supports().driven()[i];
       const std::int64_t at = 6 * driven.cell + driven.freedom;
-      const double speed = slope(driven), v = from.column(7 + driven.freedom)[driven.cell];
+      const double speed = m_slopes[i], v = from.column(7 + driven.freedom)[driven.cell];
       to.state.column(7 + driven.freedom)[driven.cell] = speed;
       to.rate[at] = to.carried[at] = to.trend[at] = (speed - v) / h;
    }

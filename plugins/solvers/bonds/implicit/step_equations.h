@@ -49,6 +49,7 @@ private:
    const Kinematics *m_from = nullptr;
    const Loading *m_loading = nullptr;
    Vector m_carried;
+   Column m_slopes; // of driven degrees of freedom
    double m_step = 0, m_power = 0;
    Vector m_internal, m_exerted, m_external, m_ground;
 };
