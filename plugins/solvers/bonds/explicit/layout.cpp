@@ -188,13 +188,15 @@ std::array<double, kConstants> Builder::constantsOf(const Bond &bond) const
 void Builder::addRun(const Bond *const (&lane)[kBlock], bool listed)
 {
    Run run;
-   const Bond *some = nullptr;
-   bool uniform = true, coupled = false, actuated = false;
+   const Bond *some = nullptr, *last = nullptr;
+   bool uniform = true, coupled = false, actuated = false, ascending = listed;
    for (std::size_t i = 0; i < kBlock; ++i) {
       if (!lane[i])
          continue;
       if (!some)
          some = lane[i];
+      ascending = ascending && (!last || (last->lo < lane[i]->lo && last->hi < lane[i]->hi));
+      last = lane[i];
       run.lanes = static_cast<std::uint16_t>(run.lanes | 1u << i);
       run.lo = lane[i]->lo - static_cast<std::uint32_t>(i);
       run.hi = lane[i]->hi - static_cast<std::uint32_t>(i);
@@ -206,7 +208,8 @@ void Builder::addRun(const Bond *const (&lane)[kBlock], bool listed)
    run.axis = static_cast<std::uint8_t>(std::min<std::uint32_t>(some->way, 3));
    run.frame = some->way < 3 ? 0 : some->way - 3;
    run.flags = static_cast<std::uint8_t>((uniform ? Run::uniform : 0) | (listed ? Run::listed : 0) |
-                                         (coupled ? Run::coupled : 0) | (actuated ? Run::actuated : 0));
+                                         (coupled ? Run::coupled : 0) | (actuated ? Run::actuated : 0) |
+                                         (ascending ? Run::ascending : 0));
    if (uniform) {
       const auto set = constantsOf(*some);
       const auto [found, added] = m_sets.try_emplace(set, static_cast<std::uint32_t>(m_out.pool.size()));
@@ -232,8 +235,8 @@ void Builder::addRun(const Bond *const (&lane)[kBlock], bool listed)
    if (listed) {
       run.lo = run.hi = static_cast<std::uint32_t>(m_out.listLo.size());
       for (const Bond *one : lane) {
-         m_out.listLo.push_back(one ? one->lo : some->lo);
-         m_out.listHi.push_back(one ? one->hi : some->hi);
+         m_out.listLo.push_back(one ? one->lo : last->lo);
+         m_out.listHi.push_back(one ? one->hi : last->hi);
       }
    }
    m_out.runs.push_back(run);
@@ -262,13 +265,17 @@ void Builder::addBonds(std::vector<Bond> &bonds, std::size_t first, std::size_t 
             rest[head.way].push_back(&bonds[k]);
       i = j;
    }
-   for (const auto &[way, list] : rest)
+   for (auto &[way, list] : rest) {
+      std::sort(list.begin(), list.end(), [](const Bond *x, const Bond *y) {
+         return std::tuple(x->lo, x->hi, x->bond) < std::tuple(y->lo, y->hi, y->bond);
+      });
       for (std::size_t i = 0; i < list.size(); i += kBlock) {
          const Bond *lane[kBlock] = {};
          std::copy(list.begin() + static_cast<std::ptrdiff_t>(i),
                    list.begin() + static_cast<std::ptrdiff_t>(std::min(list.size(), i + kBlock)), lane);
          addRun(lane, true);
       }
+   }
 }
 
 void Builder::placeBonds()

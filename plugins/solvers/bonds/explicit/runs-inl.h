@@ -130,6 +130,67 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
    }
 }
 
+/// Ascending places of a column that lie in a few vectors side by side: a vector of values is picked out of
+/// those, and added back into them, without touching each by itself.
+template<class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+class Picked
+{
+public:
+   /// Whether a vector holds a whole block; smaller ones gain nothing (measured: f64 with AVX-512).
+   static constexpr bool kWorthWhile = hn::MaxLanes(D()) == kBlock;
+
+   /// What is not `there` comes last, at the place of the last that is.
+   static bool fits(const std::uint32_t *places) { return places[kBlock - 1] - places[0] < kMost * kBlock; }
+   HWY_INLINE void take(const std::uint32_t *places, std::uint16_t there)
+   {
+      m_first = places[0];
+      m_windows = (places[kBlock - 1] - m_first) / kBlock + 1;
+      for (std::size_t w = 0; w < m_windows; ++w)
+         hn::Store(hn::Set(DU(), kNone), DU(), m_from + w * kBlock);
+      for (std::size_t i = 0; i < kBlock; ++i) {
+         m_to[i] = places[i] - m_first;
+         if (there >> i & 1)
+            m_from[m_to[i]] = static_cast<U>(i);
+      }
+   }
+   HWY_INLINE V pick(D d, const T *column) const
+   {
+      const auto to = hn::Load(DU(), m_to);
+      const auto indices = hn::IndicesFromVec(d, hn::And(to, hn::Set(DU(), U(kBlock - 1))));
+      V out = hn::TableLookupLanes(hn::LoadU(d, column + m_first), indices);
+      for (std::size_t at = kBlock; at < m_windows * kBlock; at += kBlock) {
+         const auto later = hn::Gt(hn::BitCast(DI(), to), hn::Set(DI(), static_cast<I>(at - 1)));
+         out = hn::IfThenElse(hn::RebindMask(d, later),
+                              hn::TableLookupLanes(hn::LoadU(d, column + m_first + at), indices), out);
+      }
+      return out;
+   }
+   /// `column` begins with place `start`.
+   HWY_INLINE void add(D d, T *column, std::size_t start, V values) const
+   {
+      for (std::size_t at = 0; at < m_windows * kBlock; at += kBlock) {
+         T *const to = column + (m_first - start) + at;
+         const auto from = hn::Load(DU(), m_from + at);
+         const auto mask = hn::RebindMask(d, hn::Ne(from, hn::Set(DU(), kNone)));
+         const auto indices = hn::IndicesFromVec(d, hn::And(from, hn::Set(DU(), U(kBlock - 1))));
+         const V change = hn::IfThenElseZero(mask, hn::TableLookupLanes(values, indices));
+         hn::StoreU(hn::Add(hn::LoadU(d, to), change), d, to);
+      }
+   }
+
+private:
+   using DU = hn::RebindToUnsigned<D>;
+   using DI = hn::RebindToSigned<D>;
+   using U = hn::TFromD<DU>;
+   using I = hn::TFromD<DI>;
+   static constexpr std::size_t kMost = 6;
+   static constexpr U kNone = static_cast<U>(-1);
+
+   std::size_t m_first = 0, m_windows = 0;
+   HWY_ALIGN U m_to[kBlock];           // of each lane, how far from the first place
+   HWY_ALIGN U m_from[kMost * kBlock]; // of each place, the lane
+};
+
 /// A run whose cells lie anywhere: copied together, and its forces spread in order.
 template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
 HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *outA, std::size_t outStrideA,
@@ -140,8 +201,23 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
    HWY_ALIGN T out[2][6 * kBlock] = {};
    const std::uint32_t *lo = work.listLo + run.lo, *hi = work.listHi + run.lo;
    const int columns = kDamped ? 13 : 7;
+   Picked<D> pickedLo, pickedHi;
+   bool near = false;
+   if constexpr (Picked<D>::kWorthWhile) {
+      near = spread && (run.flags & Run::ascending) && Picked<D>::fits(lo) && Picked<D>::fits(hi);
+      if (near) {
+         pickedLo.take(lo, run.lanes);
+         pickedHi.take(hi, run.lanes);
+      }
+   }
    for (int k = 0; k < columns; ++k) {
       const T *column = k < 7 ? work.state + k * work.stride : work.rate + (k - 7) * work.stride;
+      if constexpr (Picked<D>::kWorthWhile)
+         if (near) {
+            hn::Store(pickedLo.pick(d, column), d, in[0] + k * kBlock);
+            hn::Store(pickedHi.pick(d, column), d, in[1] + k * kBlock);
+            continue;
+         }
       for (std::size_t i = 0; i < kBlock; ++i) {
          in[0][k * kBlock + i] = column[lo[i]];
          in[1][k * kBlock + i] = column[hi[i]];
@@ -161,6 +237,14 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
       bondsOfRun<kDamped, false, kFused>(d, work, run, ends, power);
    if (!spread)
       return;
+   if constexpr (Picked<D>::kWorthWhile)
+      if (near) {
+         for (int k = 0; k < 6; ++k) {
+            pickedLo.add(d, outA + k * outStrideA, firstA, hn::Load(d, out[0] + k * kBlock));
+            pickedHi.add(d, outB + k * outStrideB, firstB, hn::Load(d, out[1] + k * kBlock));
+         }
+         return;
+      }
    for (int k = 0; k < 6; ++k)
       for (std::size_t i = 0; i < kBlock; ++i)
          if (run.lanes >> i & 1) {

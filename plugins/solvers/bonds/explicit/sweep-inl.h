@@ -80,7 +80,7 @@ void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, 
    const Window window(one, work.span);
    const std::size_t hiStride = window.stride;
    std::fill_n(room, 6 * hiStride, T(0));
-   HWY_ALIGN T atLo[6 * kChunk];
+   HWY_ALIGN T atLo[6 * kChunk + 2 * kBlock]; // with room for vectors that reach beyond the last
    LaneSums<T> lanes;
    std::uint32_t first = one.cells;
    for (std::uint32_t c = one.chunks; c < one.chunksEnd; ++c) {

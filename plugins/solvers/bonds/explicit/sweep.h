@@ -26,8 +26,10 @@ struct Run
    std::uint8_t axis = 0;       // 3 = askew
    std::uint8_t flags = 0;
 
-   static constexpr std::uint8_t uniform = 1, // one set of constants for all
-       listed = 2, coupled = 4, actuated = 8;
+   static constexpr std::uint8_t
+       uniform = 1, // one set of constants for all
+       listed = 2, coupled = 4, actuated = 8,
+       ascending = 16; // listed in ascending order at both ends, none twice; what is not there comes last
    static constexpr std::uint8_t general = listed | coupled | actuated;
 };
 
@@ -100,7 +102,8 @@ struct SweepWork
    T *start = nullptr, *sum = nullptr; // of stages: columns like those of the state
    const T *inverseMass = nullptr, *inverseInertia = nullptr;
    const std::uint8_t *held = nullptr;
-   const T *boxes = nullptr; // of cells that are no cubes: orientation w x y z, inertias x y z; else null
+   const T *boxes = nullptr; // of cells that are no cubes: orientation w x y z, inertias x y z, their
+                             // inverse; else null
    const T *loads = nullptr; // six columns, null without loads
    T gravity[3]{}, drag = 0;
 

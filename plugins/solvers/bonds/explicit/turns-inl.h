@@ -117,7 +117,7 @@ template<bool kFused, class V>
 struct Boxes
 {
    Three<V> own[3]; // rows of the matrix from own axes to the world's
-   Three<V> inertia;
+   Three<V> inertia, inverse;
 
    Three<V> momentum(Three<V> w) const
    {
@@ -129,7 +129,7 @@ struct Boxes
    {
       const Three<V> in = rotateBack<kFused>(own, momentum);
       return rotate<kFused>(
-          own, Three<V>{hn::Div(in.x, inertia.x), hn::Div(in.y, inertia.y), hn::Div(in.z, inertia.z)});
+          own, Three<V>{hn::Mul(inverse.x, in.x), hn::Mul(inverse.y, in.y), hn::Mul(inverse.z, in.z)});
    }
 };
 
@@ -157,7 +157,8 @@ HWY_INLINE Boxes<kFused, V> boxesOf(D d, const SweepWork<T> &work, std::size_t c
    return {{{hn::Sub(one, hn::Add(yy, zz)), hn::Sub(xy, wz), hn::Add(xz, wy)},
             {hn::Add(xy, wz), hn::Sub(one, hn::Add(xx, zz)), hn::Sub(yz, wx)},
             {hn::Sub(xz, wy), hn::Add(yz, wx), hn::Sub(one, hn::Add(xx, yy))}},
-           three(d, box + 4 * stride, stride, kWorld)};
+           three(d, box + 4 * stride, stride, kWorld),
+           three(d, box + 7 * stride, stride, kWorld)};
 }
 
 template<class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>

@@ -64,17 +64,15 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
       push(i);
    }
    if (assembly.boxes) {
-      m_boxes.assign(7 * stride, 1);
+      m_boxes.assign(10 * stride, 1);
       for (std::int64_t i = 0; i < assembly.cells; ++i) {
          const Quat o = assembly.orientation[i];
-         const double all[7] = {o.w,
-                                o.x,
-                                o.y,
-                                o.z,
-                                assembly.boxInertia[0][i],
-                                assembly.boxInertia[1][i],
-                                assembly.boxInertia[2][i]};
-         for (std::size_t k = 0; k < 7; ++k)
+         double all[10] = {o.w, o.x, o.y, o.z};
+         for (std::size_t k = 0; k < 3; ++k) {
+            all[4 + k] = assembly.boxInertia[k][i];
+            all[7 + k] = 1 / all[4 + k];
+         }
+         for (std::size_t k = 0; k < 10; ++k)
             m_boxes[k * stride + m_layout.place[i]] = static_cast<T>(all[k]);
       }
       m_sweep.boxes = m_boxes.data();
