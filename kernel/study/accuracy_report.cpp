@@ -67,18 +67,19 @@ std::string titleOf(const AccuracyStudy &study)
                       study.until);
 }
 
-/// Rows of one name in the order of their steps.
+/// A line for each setting: in the order of its steps, or where there are none of its resolutions.
 std::vector<Series> seriesOf(const AccuracyStudy &study)
 {
    std::vector<Series> all;
    for (const AccuracyRow &row : study.rows) {
       if (!row.error)
          continue;
-      const std::string name = rowName(row);
+      const bool cut = row.analysis != "dynamics" && row.resolution > 1;
+      const std::string name = cut ? row.setting : rowName(row);
       auto found = std::find_if(all.begin(), all.end(), [&](const Series &one) { return one.name == name; });
       if (found == all.end())
          found = all.insert(all.end(), Series{name, {}, true});
-      found->points.push_back({row.seconds, *row.error, ""});
+      found->points.push_back({row.seconds, *row.error, cut ? fmt::format("{}x", row.resolution) : ""});
    }
    return all;
 }

@@ -60,6 +60,7 @@ constexpr std::array<const char *, 8> kSymbols{"●", "■", "▲", "◆", "▼"
 constexpr int kWidth = 900, kHeight = 600; // of the SVG in points; the PNG has twice as many pixels
 constexpr int kPngScale = 2;
 constexpr double kLeft = 0.09, kRight = 0.69, kBottom = 0.12, kTop = 0.91; // of the plotting area
+constexpr double kLine = 0.042;                                            // of the legend's lines
 
 /// '#' begins an escape in PLplot's texts.
 std::string plain(const std::string &text)
@@ -258,9 +259,11 @@ private:
            line.y[0] - 0.035 * (m_y.high - m_y.low), right ? 0 : 1, m_chart.marked->label);
    }
 
-   /// Right of the plotting area, one line an entry.
+   /// Right of the plotting area, one line an entry; many are set closer and smaller.
    void legend() const
    {
+      const double entries = static_cast<double>(m_chart.series.size()) + (m_chart.front.empty() ? 0 : 1);
+      const double scale = std::min(1.0, (kTop - 0.04) / (kLine * std::max(1.0, entries)));
       plvpor(0, 1, 0, 1);
       plwind(0, 1, 0, 1);
       double y = kTop - 0.02;
@@ -272,13 +275,13 @@ private:
          if (joined)
             pljoin(x, y, x + 0.035, y);
          const double middle = x + 0.0175;
-         plschr(0, 0.75);
+         plschr(0, 0.75 * scale);
          if (symbol)
             plstring(1, &middle, &y, symbol);
          plcol0(kInk);
-         plschr(0, 0.62);
+         plschr(0, 0.62 * scale);
          text(x + 0.045, y, 0, words);
-         y -= 0.042;
+         y -= kLine * scale;
       };
       for (std::size_t k = 0; k < m_chart.series.size(); ++k)
          entry(colorOf(k), 1.5, m_chart.series[k].joined, symbolOf(k), m_chart.series[k].name);

@@ -211,15 +211,17 @@ struct SolverChoice
    double reproducible = 0;
    std::string instructions = "best";
    double numericalDamping = 0.2, stepTolerance = 1e-3;
-   std::string junction = "stepped", modesFrom = "lowest";
+   std::string junction = "stepped", modesFrom = "lowest", stableStep = "bound";
 };
 
 /// A running solver.
 class Run
 {
 public:
-   explicit Run(HandScene &scene, const SolverChoice &choice = {}, int threads = 1) : host(threads)
+   explicit Run(HandScene &scene, const SolverChoice &choice = {}, int threads = 1, bool cancelled = false)
+       : host(threads)
    {
+      host.cancel = cancelled;
       struct Value
       {
          const char *name;
@@ -239,7 +241,8 @@ public:
                            {"numerical_damping", choice.numericalDamping, ""},
                            {"step_tolerance", choice.stepTolerance, ""},
                            {"junction", 0, choice.junction.c_str()},
-                           {"modes_from", 0, choice.modesFrom.c_str()}};
+                           {"modes_from", 0, choice.modesFrom.c_str()},
+                           {"stable_step", 0, choice.stableStep.c_str()}};
       std::vector<const char *> names, texts;
       std::vector<double> numbers;
       for (const Value &one : all) {

@@ -38,13 +38,13 @@ Asked askedOf(std::string_view analysis, const Options &options)
 
 } // namespace
 
-void BondsSolver::estimate(sdk::Call, sdk::Values values, const sdk::SceneView &scene,
+void BondsSolver::estimate(sdk::Call call, sdk::Values values, const sdk::SceneView &scene,
                            diatom_estimate &estimate)
 {
    const Options options = Options::from(values);
    switch (askedOf(scene.analysis(), options)) {
    case Asked::motion:
-      return ExplicitRun::estimate(options, scene, estimate);
+      return ExplicitRun::estimate(call, options, scene, estimate);
    case Asked::implicitMotion:
       return ImplicitRun::estimate(options, scene, estimate);
    case Asked::balance:
@@ -59,7 +59,7 @@ BondsSolver::BondsSolver(sdk::Call call, sdk::Values values, const sdk::SceneVie
    const Options options = Options::from(values);
    switch (askedOf(scene.analysis(), options)) {
    case Asked::motion: {
-      auto run = std::make_unique<ExplicitRun>(options, scene);
+      auto run = std::make_unique<ExplicitRun>(call, options, scene);
       call.report(DIATOM_INFO, run->how());
       m_analysis = std::move(run);
       break;

@@ -38,6 +38,12 @@ void BlockMatrix::clearRow(std::int64_t row)
    std::fill(m_value.begin() + 36 * m_first[row], m_value.begin() + 36 * m_first[row + 1], 0.0);
 }
 
+void BlockMatrix::subtract(const BlockMatrix &other)
+{
+   for (std::size_t i = 0; i < m_value.size(); ++i)
+      m_value[i] -= other.m_value[i];
+}
+
 void BlockMatrix::multiply(const sdk::Call &call, const Vector &x, Vector &y) const
 {
    y.resize(6 * rows());

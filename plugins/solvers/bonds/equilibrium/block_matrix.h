@@ -38,6 +38,8 @@ public:
    double value(std::int64_t index) const { return m_value[index]; }
 
    void clearRow(std::int64_t row);
+   /// A -= B, of the same pattern.
+   void subtract(const BlockMatrix &other);
    /// y = A x
    void multiply(const sdk::Call &call, const Vector &x, Vector &y) const;
 

@@ -1,9 +1,6 @@
 #include "equilibrium/modes.h"
 
-#include "equilibrium/ritz.h"
-
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include "equilibrium/mass_scaled.h"
 
 #include <limits>
 
@@ -24,61 +21,6 @@ constexpr std::size_t kLookEvery = 6;
 constexpr double kShift = 1e-9;
 /// An eigenvalue this small a part of the largest cannot be told from none.
 constexpr double kNone = 64 * std::numeric_limits<double>::epsilon();
-
-/// A mass matrix M = L L^T of blocks on the diagonal.
-struct MassRoot
-{
-   explicit MassRoot(const std::vector<Block> &mass);
-   /// L^-T y
-   Vector shapeOf(const Vector &y) const;
-
-   std::vector<Block> root, inverse; // L^T, L^-T
-};
-
-MassRoot::MassRoot(const std::vector<Block> &mass) : root(mass.size()), inverse(mass.size())
-{
-   for (std::size_t i = 0; i < mass.size(); ++i) {
-      const Eigen::LLT<Block> llt(mass[i]);
-      root[i] = llt.matrixU();
-      inverse[i] = root[i].inverse();
-   }
-}
-
-Vector MassRoot::shapeOf(const Vector &y) const
-{
-   Vector out(y.size());
-   for (std::size_t i = 0; i < root.size(); ++i)
-      out.segment<6>(6 * i).noalias() = inverse[i] * y.segment<6>(6 * i);
-   return out;
-}
-
-/// L^-1 K L^-T on free degrees of freedom.
-class Direct : public SymmetricOperator
-{
-public:
-   Direct(const sdk::Call &call, const Balance &balance, const State &state, const Loading &loading)
-       : m_free(balance.supports().free()), m_root(massBlocks(balance, state)), m_stiffness(balance.pattern())
-   {
-      balance.stiffness(call, state, loading, 0, m_stiffness);
-   }
-
-   bool apply(const sdk::Call &call, const Vector &y, Vector &out) const override
-   {
-      m_stiffness.multiply(call, shapeOf(y), out);
-      out.array() *= m_free.array();
-      for (std::size_t i = 0; i < m_root.inverse.size(); ++i)
-         out.segment<6>(6 * i) = (m_root.inverse[i].transpose() * out.segment<6>(6 * i)).eval();
-      out.array() *= m_free.array();
-      return true;
-   }
-   Vector shapeOf(const Vector &y) const { return m_root.shapeOf(y).cwiseProduct(m_free); }
-   const Vector &free() const override { return m_free; }
-
-private:
-   Vector m_free;
-   MassRoot m_root;
-   BlockMatrix m_stiffness;
-};
 
 /// B = L^T (K - shift M)^-1 L on free degrees of freedom.
 class Inverted : public SymmetricOperator
@@ -210,27 +152,6 @@ bool growUntilSharp(const sdk::Call &call, RitzSpace &space, std::size_t wanted)
 
 } // namespace
 
-std::vector<Block> massBlocks(const Balance &balance, const State &state)
-{
-   const Assembly &assembly = balance.assembly();
-   const Vector &free = balance.supports().free();
-   std::vector<Block> out(static_cast<std::size_t>(state.n), Block::Zero());
-   for (std::int64_t i = 0; i < state.n; ++i) {
-      Block &block = out[i];
-      for (int k = 0; k < 3; ++k) {
-         const Vec3 unit{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
-         const Vec3 momentum = spinMomentum(assembly, i, state.turnOf(i), unit);
-         block(k, k) = assembly.mass[i];
-         block.col(3 + k).tail<3>() << momentum.x, momentum.y, momentum.z;
-      }
-      for (int k = 3; k < 6; ++k)
-         for (int j = 3; j < 6; ++j)
-            if (j != k)
-               block(k, j) *= free[6 * i + k] * free[6 * i + j];
-   }
-   return out;
-}
-
 ModeShapes lowestModes(const sdk::Call &call, const Balance &balance, const State &state,
                        const Loading &loading, std::int64_t wanted)
 {
@@ -256,7 +177,9 @@ ModeShapes lowestModes(const sdk::Call &call, const Balance &balance, const Stat
 ModeShapes highestModes(const sdk::Call &call, const Balance &balance, const State &state,
                         const Loading &loading, std::int64_t wanted)
 {
-   const Direct direct(call, balance, state, loading);
+   BlockMatrix stiffness = balance.pattern();
+   balance.stiffness(call, state, loading, 0, stiffness);
+   const MassScaled direct(balance, state, std::move(stiffness));
    const auto size = static_cast<std::size_t>(direct.free().sum());
    const std::size_t modes = std::min(static_cast<std::size_t>(wanted), size);
    ModeShapes out;

@@ -16,9 +16,6 @@ struct ModeShapes
    bool complete = true; // all that were wanted are as sharp as wanted
 };
 
-/// Symmetric mass of every cell, 6 x 6: that of spins turns with the cell. `free` cuts held ones out.
-std::vector<Block> massBlocks(const Balance &balance, const State &state);
-
 /// At most `wanted` of them.
 ModeShapes lowestModes(const sdk::Call &call, const Balance &balance, const State &state,
                        const Loading &loading, std::int64_t wanted);

@@ -18,7 +18,7 @@ namespace {
 /// Rigid aggregates are too stiff; their correction is lengthened (Blaheta, J. Comput. Appl. Math. 24, 1988).
 constexpr double kOverCorrection = 1.5;
 
-using Part = Eigen::Matrix<double, 6, 1>;
+using Freedoms = Eigen::Matrix<double, 6, 1>;
 
 /// Which aggregate each cell belongs to: boxes of three cells an edge, cut where cells are not joined.
 std::vector<std::int32_t> aggregates(const BlockMatrix &pattern, const Places &places, double edge,
@@ -145,7 +145,7 @@ void Multigrid::compute(const sdk::Call &call, const BlockMatrix &matrix, const 
                 free.asDiagonal() * matrix[e] * m_free.segment<6>(6 * matrix.column(e)).asDiagonal();
          auto own = m_matrix[matrix.diagonal(i)];
          own = (0.5 * (own + own.transpose())).eval();
-         own.diagonal() += Part::Ones() - free;
+         own.diagonal() += Freedoms::Ones() - free;
          m_diagonal[i] = own.inverse();
          if (!m_diagonal[i].allFinite())
             m_diagonal[i].setIdentity();
@@ -168,7 +168,7 @@ void Multigrid::compute(const sdk::Call &call, const BlockMatrix &matrix, const 
 void Multigrid::forward(const Vector &r, Vector &x) const
 {
    for (std::int64_t i = 0; i < m_matrix.rows(); ++i) {
-      Part sum = r.segment<6>(6 * i);
+      Freedoms sum = r.segment<6>(6 * i);
       for (std::int64_t e = m_matrix.begin(i); e < m_matrix.diagonal(i); ++e)
          sum.noalias() -= m_matrix[e] * x.segment<6>(6 * m_matrix.column(e));
       x.segment<6>(6 * i).noalias() = m_diagonal[i] * sum;
@@ -178,7 +178,7 @@ void Multigrid::forward(const Vector &r, Vector &x) const
 void Multigrid::backward(const Vector &r, Vector &x) const
 {
    for (std::int64_t i = m_matrix.rows(); i-- > 0;) {
-      Part sum = r.segment<6>(6 * i);
+      Freedoms sum = r.segment<6>(6 * i);
       for (std::int64_t e = m_matrix.begin(i); e < m_matrix.end(i); ++e)
          if (e != m_matrix.diagonal(i))
             sum.noalias() -= m_matrix[e] * x.segment<6>(6 * m_matrix.column(e));
@@ -194,7 +194,7 @@ void Multigrid::apply(const sdk::Call &call, const Vector &r0, Vector &x) const
    // After a forward sweep from zero what is left is minus the upper triangle times x.
    Vector coarse = Vector::Zero(6 * m_coarse.rows()), lift;
    for (std::int64_t i = 0; i < m_matrix.rows(); ++i) {
-      Part left = Part::Zero();
+      Freedoms left = Freedoms::Zero();
       for (std::int64_t e = m_matrix.diagonal(i) + 1; e < m_matrix.end(i); ++e)
          left.noalias() -= m_matrix[e] * x.segment<6>(6 * m_matrix.column(e));
       coarse.segment<6>(6 * m_aggregate[i]).noalias() += motion(i).transpose() * left;

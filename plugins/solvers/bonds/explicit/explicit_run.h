@@ -14,9 +14,10 @@ namespace bonds {
 class ExplicitRun : public Analysis
 {
 public:
-   static void estimate(const Options &options, const sdk::SceneView &scene, diatom_estimate &estimate);
+   static void estimate(const sdk::Call &call, const Options &options, const sdk::SceneView &scene,
+                        diatom_estimate &estimate);
 
-   ExplicitRun(const Options &options, const sdk::SceneView &scene);
+   ExplicitRun(const sdk::Call &call, const Options &options, const sdk::SceneView &scene);
    ExplicitRun(const ExplicitRun &) = delete;
    ExplicitRun &operator=(const ExplicitRun &) = delete;
 

@@ -42,6 +42,7 @@ Options Options::from(const sdk::Values &values)
    o.reproducible = values.number("reproducible") != 0;
    o.stepped = values.text("junction") != "mean";
    o.exact = gradient != "simple";
+   o.trueLimit = values.text("stable_step") == "eigenvalue";
    o.safety = values.number("safety");
    if (!(o.safety > 0 && o.safety <= 1))
       throw Failure(DIATOM_BAD_INPUT, "safety must lie between 0 and 1");

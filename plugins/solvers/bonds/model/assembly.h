@@ -29,6 +29,7 @@ struct Options
    bool reproducible = false; // the same bits on any instruction set
    enum class Instructions { best, avx2, sse4, scalar };
    Instructions instructions = Instructions::best;
+   bool trueLimit = false; // the stable step from the eigenvalues of the whole scene
    double safety = 0.9;
    bool forceStep = false;
 

@@ -277,6 +277,14 @@ StableStep boundAt(const Assembly &assembly, const Options &options, const Coupl
 
 } // namespace
 
+double longestStep(const Assembly &assembly, const Options &options, const Couplings &couplings, double w2,
+                   double g)
+{
+   const double least = leastDamping(assembly, couplings);
+   const double step = limitOf({w2, g + assembly.drag, least * w2 + assembly.drag}, options.integrator);
+   return std::min(step, kFreeStep);
+}
+
 StableStep stableStep(const Assembly &assembly, const Options &options, const Couplings &couplings)
 {
    StableStep best = boundAt(assembly, options, couplings, std::numeric_limits<double>::max());

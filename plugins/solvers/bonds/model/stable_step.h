@@ -19,4 +19,9 @@ inline constexpr double kFreeStep = 1e-3;
 
 StableStep stableStep(const Assembly &assembly, const Options &options, const Couplings &couplings);
 
+/// The longest step (s) that an integrator may take where nothing swings faster than `w2` (rad2/s2) or is
+/// damped more strongly than `g` (1/s), drag left out.
+double longestStep(const Assembly &assembly, const Options &options, const Couplings &couplings, double w2,
+                   double g);
+
 } // namespace bonds
