@@ -27,6 +27,7 @@ struct Row
    bool reproducible = false;
    int threads = 1;
    std::string sample{}; // of resources/samples, instead of a block
+   bool damped = false;
 };
 
 /// Repeatable noise, 0 to 1 (Numerical Recipes, 2nd ed., section 7.1).
@@ -55,6 +56,7 @@ Design blockOf(const Row &row)
       one.id = one.name = fmt::format("rubber-{}", m);
       one.density = 1100 + 20 * m;
       one.youngsModulus = 1e6 * (1 + 0.1 * m);
+      one.dampingRatio = row.damped ? 0.1 : 0;
       if (row.materials > 1) { // constants that differ by direction, so that turning a cell matters
          BondConstants k;
          const double a = 1000 * (1 + 0.1 * m);
@@ -118,6 +120,9 @@ const std::list<Row> &rows()
             add({fmt::format("dense-{}-{}-2-threads", n, type), "", "cube", n, 1, 1, single, "best", false,
                  2},
                 "the same on two threads");
+         Row damped{fmt::format("damped-28-{}", type), "", "cube", 28, 1, 1, single};
+         damped.damped = true;
+         add(damped, "a block with damping, as the samples have it");
          for (const int n : {28, 64})
             add({fmt::format("materials-{}-{}", n, type), "", "cube", n, 12, 1, single},
                 "twelve materials at random, turned at random");

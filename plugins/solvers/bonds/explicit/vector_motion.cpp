@@ -49,8 +49,35 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
     : Motion(scene, assembly, couplings, options), m_layout(assembly, m_actuation.driven(assembly.links)),
       m_kernel(sweepKernel<T>({assembly.damped, !options.reproducible, options.instructions}))
 {
-   const std::size_t n = m_layout.places, stride = strideFor<T>(n);
-   m_sweep.stride = stride;
+   m_sweep.stride = strideFor<T>(m_layout.places);
+   takeCells();
+   if (assembly.boxes)
+      takeBoxes();
+   takeBonds();
+   makeRooms();
+   m_sweep.drag = static_cast<T>(assembly.hasDrag ? assembly.drag : 0);
+   gravityChanged();
+   if (assembly.hasLoads)
+      setLoads(scene.channel("force", 6));
+   if (assembly.hasGround) {
+      m_touching.assign(m_sweep.stride, T(-1e30));
+      for (std::int64_t i = 0; i < assembly.cells; ++i)
+         m_touching[m_layout.place[i]] =
+             static_cast<T>(assembly.ground.height - assembly.rest[2][i] + assembly.halfHeight[i]);
+   }
+   for (const Drive::Led &led : m_drive.cells())
+      m_drivenPlaces.push_back({m_layout.place[led.cell], led, {}});
+   std::sort(m_drivenPlaces.begin(), m_drivenPlaces.end(),
+             [](const DrivenPlace &a, const DrivenPlace &b) { return a.place < b.place; });
+   VectorMotion::save(0);
+}
+
+/// State, masses and supports in columns by place. Padding is held, and as heavy as nothing that matters.
+template<typename T>
+void VectorMotion<T>::takeCells()
+{
+   const Assembly &assembly = *m_assembly;
+   const std::size_t stride = m_sweep.stride;
    m_columns.assign(13 * stride, 0);
    std::fill_n(column(3), stride, T(1));
    m_inverseMass.assign(stride, 1);
@@ -63,35 +90,42 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
       m_heldPlaces[at] = assembly.fixed[i];
       push(i);
    }
-   if (assembly.boxes) {
-      m_boxes.assign(10 * stride, 1);
-      for (std::int64_t i = 0; i < assembly.cells; ++i) {
-         const Quat o = assembly.orientation[i];
-         double all[10] = {o.w, o.x, o.y, o.z};
-         for (std::size_t k = 0; k < 3; ++k) {
-            all[4 + k] = assembly.boxInertia[k][i];
-            all[7 + k] = 1 / all[4 + k];
-         }
-         for (std::size_t k = 0; k < 10; ++k)
-            m_boxes[k * stride + m_layout.place[i]] = static_cast<T>(all[k]);
+   m_sweep.state = m_columns.data();
+   m_sweep.inverseMass = m_inverseMass.data();
+   m_sweep.inverseInertia = m_inverseInertia.data();
+   m_sweep.held = m_heldPlaces.data();
+}
+
+template<typename T>
+void VectorMotion<T>::takeBoxes()
+{
+   const Assembly &assembly = *m_assembly;
+   m_boxes.assign(10 * m_sweep.stride, 1);
+   for (std::int64_t i = 0; i < assembly.cells; ++i) {
+      const Quat o = assembly.orientation[i];
+      double all[10] = {o.w, o.x, o.y, o.z};
+      for (std::size_t k = 0; k < 3; ++k) {
+         all[4 + k] = assembly.boxInertia[k][i];
+         all[7 + k] = 1 / all[4 + k];
       }
-      m_sweep.boxes = m_boxes.data();
+      for (std::size_t k = 0; k < 10; ++k)
+         m_boxes[k * m_sweep.stride + m_layout.place[i]] = static_cast<T>(all[k]);
    }
-   const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
-   if (m_integrator == Options::Integrator::verlet && rates)
-      m_rates.assign(6 * stride, 0);
-   if (!stagesOf(m_integrator).empty()) {
-      m_start.assign(13 * stride, 0);
-      m_sum.assign(13 * stride, 0);
-      m_sweep.start = m_start.data();
-      m_sweep.sum = m_sum.data();
-   }
+   m_sweep.boxes = m_boxes.data();
+}
+
+template<typename T>
+void VectorMotion<T>::takeBonds()
+{
    m_pool = converted<T>(m_layout.pool);
    m_frames = converted<T>(m_layout.frames);
-   m_restShape.assign(m_layout.restPlaces, 0);
-   m_sweep.slotStride = (m_layout.runs.size() - m_layout.firstCross) * kBlock;
-   m_slots.assign(12 * m_sweep.slotStride, 0);
    m_layout.pool = {};
+   m_restShape.assign(m_layout.restPlaces, 0);
+   for (const Layout::RestPlace &rest : m_layout.rests)
+      for (const std::int64_t cell : {m_assembly->a[rest.bond], m_assembly->b[rest.bond]})
+         m_actuatedCells.push_back(cell);
+   std::sort(m_actuatedCells.begin(), m_actuatedCells.end());
+   m_actuatedCells.erase(std::unique(m_actuatedCells.begin(), m_actuatedCells.end()), m_actuatedCells.end());
    m_sweep.runs = m_layout.runs.data();
    m_sweep.chunks = m_layout.chunks.data();
    m_sweep.crossings = m_layout.crossings.data();
@@ -100,33 +134,29 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
    m_sweep.pool = m_pool.data();
    m_sweep.rest = m_restShape.data();
    m_sweep.frames = m_frames.data();
-   m_sweep.state = m_columns.data();
-   m_sweep.rate = m_rates.empty() ? column(7) : m_rates.data();
-   m_sweep.inverseMass = m_inverseMass.data();
-   m_sweep.inverseInertia = m_inverseInertia.data();
-   m_sweep.held = m_heldPlaces.data();
-   m_sweep.slots = m_slots.data();
    m_sweep.firstCross = m_layout.firstCross;
    m_sweep.span = m_layout.span;
-   m_sweep.drag = static_cast<T>(assembly.hasDrag ? assembly.drag : 0);
-   gravityChanged();
-   if (assembly.hasLoads)
-      setLoads(scene.channel("force", 6));
-   if (assembly.hasGround) {
-      m_touching.assign(stride, T(-1e30));
-      for (std::int64_t i = 0; i < assembly.cells; ++i)
-         m_touching[m_layout.place[i]] =
-             static_cast<T>(assembly.ground.height - assembly.rest[2][i] + assembly.halfHeight[i]);
+}
+
+/// What a step needs besides: what integrators remember, forces under way, sums of each tile.
+template<typename T>
+void VectorMotion<T>::makeRooms()
+{
+   const Assembly &assembly = *m_assembly;
+   const std::size_t stride = m_sweep.stride;
+   const bool rates = assembly.damped || assembly.hasDrag || assembly.hasGround;
+   if (m_integrator == Options::Integrator::verlet && rates)
+      m_rates.assign(6 * stride, 0);
+   m_sweep.rate = m_rates.empty() ? column(7) : m_rates.data();
+   if (!stagesOf(m_integrator).empty()) {
+      m_start.assign(13 * stride, 0);
+      m_sum.assign(13 * stride, 0);
+      m_sweep.start = m_start.data();
+      m_sweep.sum = m_sum.data();
    }
-   for (const Layout::RestPlace &rest : m_layout.rests)
-      for (const std::int64_t cell : {assembly.a[rest.bond], assembly.b[rest.bond]})
-         m_actuatedCells.push_back(cell);
-   std::sort(m_actuatedCells.begin(), m_actuatedCells.end());
-   m_actuatedCells.erase(std::unique(m_actuatedCells.begin(), m_actuatedCells.end()), m_actuatedCells.end());
-   for (const Drive::Led &led : m_drive.cells())
-      m_drivenPlaces.push_back({m_layout.place[led.cell], led, {}});
-   std::sort(m_drivenPlaces.begin(), m_drivenPlaces.end(),
-             [](const DrivenPlace &a, const DrivenPlace &b) { return a.place < b.place; });
+   m_sweep.slotStride = (m_layout.runs.size() - m_layout.firstCross) * kBlock;
+   m_slots.assign(12 * m_sweep.slotStride, 0);
+   m_sweep.slots = m_slots.data();
    std::size_t room = 0;
    for (const Tile &tile : m_layout.tiles) {
       m_roomAt.push_back(room);
@@ -135,7 +165,6 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
    m_rooms.resize(room);
    m_visits.resize(m_layout.tiles.size());
    m_sweepSums.resize(m_layout.tiles.size());
-   VectorMotion::save(0);
 }
 
 template<typename T>

@@ -28,6 +28,10 @@ public:
    std::string how() const override;
 
 private:
+   void takeCells();
+   void takeBoxes();
+   void takeBonds();
+   void makeRooms();
    void advance(const sdk::Call &call, double time, double dt) override;
    void readState() const override;
    void readActuated() const override;
