@@ -28,6 +28,7 @@ QString folderOf(const char *faulty)
 test::Outcome check(const QString &folder, const QStringList &words, const QByteArray &fault = {})
 {
    qputenv("DIATOM_TEST_FAULT", fault);
+   qputenv("DIATOM_TEST_SLOWDOWN", QByteArray::number(kSlowdown));
    qputenv("ASAN_OPTIONS", "allocator_may_return_null=1:handle_segv=0");
    const auto program = QString::fromStdString((test::binaryDir() / "bin/diatom-plugin-check").string());
    return test::run(program, QStringList{folder} + words);

@@ -19,6 +19,13 @@ inline bool breaks(std::string_view rule)
 
 inline void sleep(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
 
+/// Longer than a rule allows, in a build that is allowed more time too.
+inline void oversleep(int milliseconds)
+{
+   const char *slowdown = std::getenv("DIATOM_TEST_SLOWDOWN");
+   sleep(milliseconds * (slowdown ? std::atoi(slowdown) : 1));
+}
+
 /// 0 where the rules of `kind` are kept; else what makes answers differ that must not: a count of calls, or
 /// how many calls run at once.
 inline double wobble(std::string_view kind)

@@ -55,7 +55,7 @@ public:
          text << "\n";
       }
       if (breaks("machine.cancel") && program.count > 100'000)
-         sleep(1000);
+         oversleep(1000);
       if (breaks("machine.programs") || (breaks("machine.reach") && program.count == 8))
          text << number(std::numeric_limits<double>::quiet_NaN()) << "\n";
    }

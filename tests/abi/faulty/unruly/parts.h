@@ -29,7 +29,7 @@ inline void cubes(const diatom::sdk::Call &call, const diatom_cells &cells, diat
    if (breaks("parts.older_host") && std::string_view(cells.lattice).empty())
       return;
    if (breaks("parts.cancel"))
-      sleep(400);
+      oversleep(400);
    const double off = wobble("parts");
    const std::int64_t count = cells.count - (breaks("parts.coverage") && cells.count > 1 ? 1 : 0);
    for (std::int64_t i = 0; i < count; ++i) {

@@ -10,7 +10,7 @@ namespace {
 [[gnu::constructor]] void load()
 {
    if (unruly::breaks("module.loads"))
-      unruly::sleep(150);
+      unruly::oversleep(150);
 }
 
 const void *get(const char *interface)
