@@ -123,8 +123,9 @@ private slots:
    {
       const FalseRun run;
       const std::string said = run.advance("crash", Job());
-      // AddressSanitizer catches the signal, reports and ends the process itself.
-      const std::string how = kAddressSanitizer ? "its process ended" : "its process ended in a crash";
+      // Sanitizers catch the signal, report and end the process themselves.
+      const std::string how =
+          kAddressSanitizer || kThreadSanitizer ? "its process ended" : "its process ended in a crash";
       QVERIFY2(said.find("test.false.solver (step): " + how) == 0, said.c_str());
       QVERIFY2(said.find("the design is as it was") != std::string::npos, said.c_str());
       QCOMPARE(run.advance("", Job()), std::string()); // the next one has a process of its own

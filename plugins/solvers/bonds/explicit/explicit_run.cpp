@@ -86,6 +86,8 @@ void ExplicitRun::estimate(const sdk::Call &call, const Options &options, const 
       estimate.bytes = cells * (single ? 700 : 820);
       estimate.step_seconds = (single ? 0.6 : 1) * evaluations * (cells * 2e-9 + links * 6e-9);
    }
+   if (options.trueLimit)
+      estimate.bytes += cells * 3e3; // while the eigenvalue is sought
    estimate.stable_step = stable.step;
    estimate.stable_link = stable.bond < 0 ? -1 : assembly.link[stable.bond];
 }
