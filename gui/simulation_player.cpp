@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 
 namespace diatom::gui {
 
@@ -17,14 +16,13 @@ namespace {
 constexpr double kFrameSeconds = 1.0 / 60; // between frames, and the most simulated in one go
 constexpr double kSliceSeconds = 0.008;    // of wall time aimed at, so that pause and cancel act at once
 
-/// Whole steps: as many as fit into the slice, at least one. Shorter by a billionth, so that sums of steps do
-/// not round to one step more.
-double sliceEnd(const Simulation &simulation, double slice, double end)
+constexpr double kForever = 1e9; // s, of a run without an end
+
+/// As many steps as fit into the slice (s), at least one. Told by their number and not by a time, they are
+/// those of a run without slices.
+std::int64_t stepsIn(double slice, double step)
 {
-   const double step = simulation.step();
-   const double whole =
-       step > 0 ? std::max(1.0, std::floor(slice / step * (1 + 1e-9))) * step * (1 - 1e-9) : slice;
-   return std::min(simulation.time() + whole, end);
+   return step > 0 ? std::max<std::int64_t>(1, static_cast<std::int64_t>(slice / step)) : 1;
 }
 
 } // namespace
@@ -105,7 +103,7 @@ Status SimulationPlayer::Run::work()
 Status SimulationPlayer::Run::play(Simulation &simulation)
 {
    double slice = 1e-4, factor = 0;
-   const double end = design.setup.until > 0 ? design.setup.until : std::numeric_limits<double>::infinity();
+   const double end = design.setup.until > 0 ? design.setup.until : kForever;
    while (wait()) {
       const auto resumed = Clock::now();
       const double from = simulation.time();
@@ -118,7 +116,7 @@ Status SimulationPlayer::Run::play(Simulation &simulation)
       };
       while (stillPlaying()) {
          const auto begin = Clock::now();
-         if (Status status = simulation.advance(sliceEnd(simulation, slice, end), job); !status) {
+         if (Status status = simulation.advance(end, job, stepsIn(slice, simulation.step())); !status) {
             if (Status last = publish(simulation, factor); !last) // the last good state stays on screen
                return last;
             return status;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace diatom {
 
@@ -101,15 +102,17 @@ double Simulation::wallSeconds() const { return m_self->run->wallSeconds(); }
 
 void Simulation::setGoal(double time) { m_self->goal = time; }
 
-Status Simulation::advance(double until, const Job &job)
+Status Simulation::advance(double until, const Job &job, std::int64_t most)
 {
    Self &self = *m_self;
    SolverRun &run = *self.run;
    const std::int64_t batch = std::max(kBatchSteps, kBatch / run.scene().cells());
-   while (run.time() < until) {
+   const std::int64_t last = most > 0 ? self.steps + most : std::numeric_limits<std::int64_t>::max();
+   while (run.time() < until && self.steps < last) {
       if (job.cancelled())
          return Error{ErrorCode::cancelled, fmt::format("cancelled at t = {} s", numberText(run.time()))};
-      const diatom_step_request request{sizeof(diatom_step_request), until, self.askedStep, batch, 0};
+      const diatom_step_request request{sizeof(diatom_step_request), until, self.askedStep,
+                                        std::min(batch, last - self.steps), 0};
       diatom_step_result result{
           sizeof(diatom_step_result), DIATOM_RUNNING, 0, run.time(), self.step, -1, -1, 0, 0};
       const Status stepped = run.step(request, result, job);

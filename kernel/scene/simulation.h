@@ -50,9 +50,10 @@ public:
 
    /// Time that progress is told against, where advance() is called in pieces.
    void setGoal(double time);
-   /// Steps until `until` (s). On divergence: ErrorCode::unstable with bond, time and remedy; the last good
-   /// state stays readable. On cancel: ErrorCode::cancelled, likewise.
-   Status advance(double until, const Job &job);
+   /// Steps until `until` (s), or so far on the way there as `most` steps lead; 0 = all the way. On
+   /// divergence: ErrorCode::unstable with bond, time and remedy; the last good state stays readable. On
+   /// cancel: ErrorCode::cancelled, likewise.
+   Status advance(double until, const Job &job, std::int64_t most = 0);
    Result<Energy> energy(const Job &job) const;
    Result<Momentum> momentum(const Job &job) const;
    Result<Frame> frame(const Job &job) const;
