@@ -65,6 +65,7 @@ private slots:
    void motionGrowsAboveTheLimit_data();
    void motionGrowsAboveTheLimit();
    void aBlockMayTakeLongerStepsThanItsBondsSay();
+   void whereNothingCanMoveNothingLimits();
    void theSearchCanBeCancelled();
 };
 
@@ -144,6 +145,26 @@ void SolverBondsStableStepTest::aBlockMayTakeLongerStepsThanItsBondsSay()
    qInfo("step over that of the bound: %.3f", gain);
    QVERIFY2(gain > 1.05 && gain < 1.5, qPrintable(QString::number(gain)));
    QCOMPARE(known.to(1, 1.001 * known.estimate.stable_step), DIATOM_LIMIT);
+}
+
+/// Then the bound's step holds.
+void SolverBondsStableStepTest::whereNothingCanMoveNothingLimits()
+{
+   const auto heldAll = [] {
+      HandScene scene(1e-3);
+      scene.addMaterial(stuff(1e6, 0.1));
+      scene.addBlock(2, 1, 1);
+      scene.link();
+      scene.effects.push_back("damping");
+      scene.fix(0);
+      scene.fix(1);
+      return scene;
+   };
+   HandScene scene = heldAll(), same = heldAll();
+   Run run(scene, {.stableStep = "eigenvalue"}), bound(same);
+   QVERIFY2(run.status == DIATOM_OK, run.host.said.c_str());
+   QCOMPARE(run.estimate.stable_step, bound.estimate.stable_step);
+   QCOMPARE(run.to(0.01), DIATOM_OK);
 }
 
 void SolverBondsStableStepTest::theSearchCanBeCancelled()

@@ -30,6 +30,8 @@ void addGround(const Assembly &assembly, std::int64_t cell, double k, bool pushe
 std::optional<double> highest(const sdk::Call &call, const MassScaled &matrix, const char *what)
 {
    const auto size = static_cast<std::size_t>(matrix.free().sum());
+   if (size == 0)
+      return 0;
    RitzSpace space(matrix, size, kStarts, kSharpness);
    Eigen::VectorXd values;
    Eigen::MatrixXd vectors;
@@ -43,10 +45,7 @@ std::optional<double> highest(const sdk::Call &call, const MassScaled &matrix, c
          break;
       call.progress(static_cast<double>(space.done()) / kMostVectors, what);
    }
-   const std::size_t sharp = space.sharp(values, vectors);
-   if (values.size() == 0)
-      return 0;
-   if (sharp == 0 && !space.full())
+   if (space.sharp(values, vectors) == 0 && !space.full())
       throw sdk::Failure(DIATOM_LIMIT, "the highest eigenvalue was not found; use the stable step's bound");
    return std::max(0.0, values[0]) * (1 + kMargin);
 }
