@@ -40,12 +40,24 @@ HWY_INLINE void takeThree(D d, T *at, std::size_t stride, const std::size_t (&or
 
 inline constexpr std::size_t kOrder[4][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
 
-template<bool kDamped, bool kGeneral, bool kFused, class D, typename T = hn::TFromD<D>>
+/// What the bonds of a run need beside the law: nothing, their frame, or whatever the run's flags say.
+enum class Needs : std::uint8_t { nothing, frame, any };
+
+inline Needs needsOf(const Run &run)
+{
+   if ((run.flags & (Run::coupled | Run::actuated)) != 0)
+      return Needs::any;
+   return run.axis == 3 ? Needs::frame : Needs::nothing;
+}
+
+template<bool kDamped, Needs kNeeds, bool kFused, class D, typename T = hn::TFromD<D>>
 HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
 {
    using V = hn::Vec<D>;
+   constexpr bool kGeneral = kNeeds == Needs::any;
    const auto &order = kOrder[run.axis];
-   const bool uniform = run.flags & Run::uniform, askew = run.axis == 3;
+   const bool uniform = run.flags & Run::uniform;
+   const bool askew = kNeeds == Needs::frame || (kGeneral && run.axis == 3);
    const T *pool = work.pool + run.constants;
    const std::size_t lanes = hn::Lanes(d);
    for (std::size_t at = 0; at < kBlock; at += lanes) {
@@ -77,14 +89,15 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
             law.stretch = three(d, work.rest + run.rest + at, kBlock, own);
             law.turn = three(d, work.rest + run.rest + 3 * kBlock + at, kBlock, own);
          }
+      }
+      if constexpr (kNeeds != Needs::nothing)
          if (askew)
             for (int i = 0; i < 3; ++i) {
                const T *row = work.frames + 9 * run.frame + 3 * i;
                frame[i] = {hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2])};
             }
-      }
       const auto inAxes = [&](Three<V> v) HWY_ATTR {
-         if constexpr (kGeneral)
+         if constexpr (kNeeds != Needs::nothing)
             return askew ? rotate<kFused>(frame, v) : v;
          else
             return v;
@@ -106,7 +119,7 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
          state.sum = inAxes(wa + wb);
       }
       BondOut<V> out = bondLaw<kDamped, kGeneral, kFused>(d, state, law);
-      if constexpr (kGeneral)
+      if constexpr (kNeeds != Needs::nothing)
          if (askew) {
             out.force = rotateBack<kFused>(frame, out.force);
             out.atA = rotateBack<kFused>(frame, out.atA);
@@ -191,51 +204,75 @@ private:
    HWY_ALIGN U m_from[kMost * kBlock]; // of each place, the lane
 };
 
+/// The columns of an end of a listed run's bonds, side by side, kBlock apart. One number after another:
+/// gathering instructions take longer (measured on Zen 5), and compilers choose them for a loop that they see
+/// through.
+template<bool kDamped, typename T>
+HWY_INLINE void gather(const SweepWork<T> &work, const std::uint32_t *places, std::size_t count, T *in)
+{
+   for (std::size_t i = 0; i < count; ++i) {
+      std::size_t place = places[i];
+      asm("" : "+r"(place));
+      const T *from = work.state + place;
+      for (std::size_t k = 0; k < 7; ++k)
+         in[k * kBlock + i] = from[k * work.stride];
+      if constexpr (kDamped) {
+         from = work.rate + place;
+         for (std::size_t k = 0; k < 6; ++k)
+            in[(7 + k) * kBlock + i] = from[k * work.stride];
+      }
+   }
+}
+
 /// A run whose cells lie anywhere: copied together, and its forces spread in order.
 template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
 HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *outA, std::size_t outStrideA,
                             T *outB, std::size_t outStrideB, std::uint32_t firstA, std::uint32_t firstB,
-                            bool spread, T *power)
+                            bool apart, T *power)
 {
    HWY_ALIGN T in[2][13 * kBlock];
    HWY_ALIGN T out[2][6 * kBlock] = {};
    const std::uint32_t *lo = work.listLo + run.lo, *hi = work.listHi + run.lo;
-   const int columns = kDamped ? 13 : 7;
+   const std::size_t count = hwy::PopCount(run.lanes); // the first ones are there
    Picked<D> pickedLo, pickedHi;
    bool near = false;
    if constexpr (Picked<D>::kWorthWhile) {
-      near = spread && (run.flags & Run::ascending) && Picked<D>::fits(lo) && Picked<D>::fits(hi);
+      near = !apart && (run.flags & Run::ascending) && Picked<D>::fits(lo) && Picked<D>::fits(hi);
       if (near) {
          pickedLo.take(lo, run.lanes);
          pickedHi.take(hi, run.lanes);
-      }
-   }
-   for (int k = 0; k < columns; ++k) {
-      const T *column = k < 7 ? work.state + k * work.stride : work.rate + (k - 7) * work.stride;
-      if constexpr (Picked<D>::kWorthWhile)
-         if (near) {
+         for (int k = 0; k < (kDamped ? 13 : 7); ++k) {
+            const T *column = k < 7 ? work.state + k * work.stride : work.rate + (k - 7) * work.stride;
             hn::Store(pickedLo.pick(d, column), d, in[0] + k * kBlock);
             hn::Store(pickedHi.pick(d, column), d, in[1] + k * kBlock);
-            continue;
          }
-      for (std::size_t i = 0; i < kBlock; ++i) {
-         in[0][k * kBlock + i] = column[lo[i]];
-         in[1][k * kBlock + i] = column[hi[i]];
       }
+   }
+   if (!near) {
+      const std::size_t whole = hwy::RoundUpTo(count, hn::Lanes(d));
+      gather<kDamped>(work, lo, whole, in[0]);
+      gather<kDamped>(work, hi, whole, in[1]);
    }
    EndPlaces<T> ends{in[0],  in[1], in[0] + 7 * kBlock, in[1] + 7 * kBlock, out[0], out[1], kBlock,
                      kBlock, kBlock};
-   if (!spread) { // each bond has places of its own
+   if (apart) { // each bond has places of its own
       ends.outA = outA;
       ends.outB = outB;
       ends.outStrideA = outStrideA;
       ends.outStrideB = outStrideB;
    }
-   if ((run.flags & (Run::coupled | Run::actuated)) != 0 || run.axis == 3)
-      bondsOfRun<kDamped, true, kFused>(d, work, run, ends, power);
-   else
-      bondsOfRun<kDamped, false, kFused>(d, work, run, ends, power);
-   if (!spread)
+   switch (needsOf(run)) {
+   case Needs::nothing:
+      bondsOfRun<kDamped, Needs::nothing, kFused>(d, work, run, ends, power);
+      break;
+   case Needs::frame:
+      bondsOfRun<kDamped, Needs::frame, kFused>(d, work, run, ends, power);
+      break;
+   case Needs::any:
+      bondsOfRun<kDamped, Needs::any, kFused>(d, work, run, ends, power);
+      break;
+   }
+   if (apart)
       return;
    if constexpr (Picked<D>::kWorthWhile)
       if (near) {
@@ -246,18 +283,16 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
          return;
       }
    for (int k = 0; k < 6; ++k)
-      for (std::size_t i = 0; i < kBlock; ++i)
-         if (run.lanes >> i & 1) {
-            outA[k * outStrideA + lo[i] - firstA] += out[0][k * kBlock + i];
-            outB[k * outStrideB + hi[i] - firstB] += out[1][k * kBlock + i];
-         }
+      for (std::size_t i = 0; i < count; ++i) {
+         outA[k * outStrideA + lo[i] - firstA] += out[0][k * kBlock + i];
+         outB[k * outStrideB + hi[i] - firstB] += out[1][k * kBlock + i];
+      }
 }
 
-template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
-HWY_NOINLINE void generalRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends,
-                             T *power)
+template<bool kDamped, Needs kNeeds, bool kFused, class D, typename T = hn::TFromD<D>>
+HWY_NOINLINE void otherRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
 {
-   bondsOfRun<kDamped, true, kFused>(d, work, run, ends, power);
+   bondsOfRun<kDamped, kNeeds, kFused>(d, work, run, ends, power);
 }
 
 /// Adds the forces of a run: at lo from `outA`, which stands for cell firstA, at hi likewise.
@@ -267,7 +302,7 @@ HWY_INLINE void addRun(D d, const SweepWork<T> &work, const Run &run, T *outA, s
 {
    if (HWY_UNLIKELY(run.flags & Run::listed))
       return listedRun<kDamped, kFused>(d, work, run, outA, outStrideA, outB, outStrideB, firstA, firstB,
-                                        true, power);
+                                        false, power);
    const EndPlaces<T> ends{work.state + run.lo,
                            work.state + run.hi,
                            work.rate + run.lo,
@@ -277,10 +312,13 @@ HWY_INLINE void addRun(D d, const SweepWork<T> &work, const Run &run, T *outA, s
                            work.stride,
                            outStrideA,
                            outStrideB};
-   if (HWY_UNLIKELY((run.flags & Run::general) != 0 || run.axis == 3))
-      generalRun<kDamped, kFused>(d, work, run, ends, power);
+   const Needs needs = needsOf(run);
+   if (HWY_LIKELY(needs == Needs::nothing))
+      bondsOfRun<kDamped, Needs::nothing, kFused>(d, work, run, ends, power);
+   else if (needs == Needs::frame)
+      otherRun<kDamped, Needs::frame, kFused>(d, work, run, ends, power);
    else
-      bondsOfRun<kDamped, false, kFused>(d, work, run, ends, power);
+      otherRun<kDamped, Needs::any, kFused>(d, work, run, ends, power);
 }
 
 } // namespace bonds::HWY_NAMESPACE

@@ -142,7 +142,7 @@ void cross(const SweepWork<T> &work, const Tile &tile, SweepSums &sums)
       for (int k = 0; k < 12; ++k)
          std::fill_n(lo + k * work.slotStride, kBlock, T(0));
       if (run.flags & Run::listed)
-         listedRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, 0, 0, false,
+         listedRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, 0, 0, true,
                                     power);
       else
          addRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, run.lo, run.hi,

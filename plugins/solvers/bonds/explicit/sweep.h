@@ -26,11 +26,10 @@ struct Run
    std::uint8_t axis = 0;       // 3 = askew
    std::uint8_t flags = 0;
 
-   static constexpr std::uint8_t
-       uniform = 1, // one set of constants for all
-       listed = 2, coupled = 4, actuated = 8,
-       ascending = 16; // listed in ascending order at both ends, none twice; what is not there comes last
-   static constexpr std::uint8_t general = listed | coupled | actuated;
+   static constexpr std::uint8_t uniform = 1, // one set of constants for all
+       listed = 2,                            // what is not there comes last
+       coupled = 4, actuated = 8,
+                                 ascending = 16; // listed in ascending order at both ends, none twice
 };
 
 /// Constants of a bond in the pool, in this order; each takes one place, or sixteen where the run is not
