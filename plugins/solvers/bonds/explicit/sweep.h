@@ -26,10 +26,10 @@ struct Run
    std::uint8_t axis = 0;       // 3 = askew
    std::uint8_t flags = 0;
 
-   static constexpr std::uint8_t uniform = 1, // one set of constants for all
-       listed = 2,                            // what is not there comes last
-       coupled = 4, actuated = 8,
-                                 ascending = 16; // listed in ascending order at both ends, none twice
+   static constexpr std::uint8_t uniform = 1; // one set of constants for all
+   static constexpr std::uint8_t listed = 2;  // what is not there comes last
+   static constexpr std::uint8_t coupled = 4, actuated = 8;
+   static constexpr std::uint8_t ascending = 16; // listed in ascending order at both ends, none twice
 };
 
 /// Constants of a bond in the pool, in this order; each takes one place, or sixteen where the run is not
