@@ -77,7 +77,7 @@ int main(int argc, char **argv)
    if (!parser.isSet(screenshot)) // which nobody watches
       catalogue = askForConsent(catalogue, settings);
    std::vector<std::unique_ptr<MainWindow>> windows;
-   setPluginWarnings([&windows](const std::string &sentence) { // from any thread
+   setPluginWarnings([&windows](const std::string &sentence, PluginWarning) { // from any thread
       std::fprintf(stderr, "%s\n", sentence.c_str());
       QMetaObject::invokeMethod(
           qApp,

@@ -174,7 +174,9 @@ std::vector<Finding> runHere(const Check &check, Subject subject)
 {
    Findings findings;
    std::mutex mutex;
-   setPluginWarnings([&](const std::string &sentence) {
+   setPluginWarnings([&](const std::string &sentence, PluginWarning kind) {
+      if (kind == PluginWarning::remark)
+         return;
       const std::lock_guard lock(mutex);
       findings.add(Severity::failure, sentence);
    });

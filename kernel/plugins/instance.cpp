@@ -28,7 +28,8 @@ struct HostCall
    const Job *job = nullptr;
    const char *who = nullptr, *function = nullptr;
    std::mutex mutex;
-   std::string text; // of errors and warnings reported, in order
+   std::string text;     // of errors and warnings reported, in order
+   std::string warnings; // of warnings alone
    std::vector<std::unique_ptr<void, FreeScratch>> scratch;
 };
 
@@ -40,9 +41,10 @@ void report(const diatom_call *call, std::int32_t level, const char *text)
       return;
    HostCall &self = host(call);
    const std::lock_guard lock(self.mutex);
-   if (!self.text.empty())
-      self.text += "; ";
-   self.text += text;
+   const auto add = [&](std::string &to) { to += (to.empty() ? "" : "; ") + std::string(text); };
+   add(self.text);
+   if (level == DIATOM_WARNING)
+      add(self.warnings);
 }
 
 std::int32_t cancelled(const diatom_call *call) { return host(call).job->cancelled() ? 1 : 0; }
@@ -155,8 +157,11 @@ Status guardedCall(const std::string &who, const char *function, const Job &job,
       report(&record, DIATOM_ERROR, "it let an exception out, which the plugin contract forbids");
    }
    warnOfChange(who, function, process.restore());
-   if (status == DIATOM_OK)
+   if (status == DIATOM_OK) {
+      if (!state.warnings.empty())
+         warnOfPlugin(who + ": " + state.warnings, PluginWarning::remark);
       return {};
+   }
    return Error{codeOf(status),
                 fmt::format("{} ({}): {}", who, function, state.text.empty() ? nameOf(status) : state.text)};
 }

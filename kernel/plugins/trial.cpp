@@ -73,7 +73,10 @@ std::string trial(const Manifest &manifest)
    isolate();
    stopWatchingCalls();
    std::string text;
-   setPluginWarnings([&](const std::string &sentence) { text += (text.empty() ? "" : "; ") + sentence; });
+   setPluginWarnings([&](const std::string &sentence, PluginWarning kind) {
+      if (kind == PluginWarning::misdeed)
+         text += (text.empty() ? "" : "; ") + sentence;
+   });
    Job job;
    job.setThreads(1); // a pool of threads does not survive the making of a child
    const ProcessTraces before;

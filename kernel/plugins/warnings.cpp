@@ -12,6 +12,7 @@ struct Warned
 {
    std::mutex mutex;
    std::set<std::string> told;
+   int muted = 0;
    PluginWarnings to;
 };
 
@@ -23,14 +24,16 @@ Warned &warned()
 
 } // namespace
 
-void warnOfPlugin(const std::string &sentence)
+void warnOfPlugin(const std::string &sentence, PluginWarning kind)
 {
    Warned &self = warned();
    const std::lock_guard lock(self.mutex);
+   if (kind == PluginWarning::remark && self.muted > 0)
+      return;
    if (!self.told.insert(sentence).second)
       return;
    if (self.to)
-      self.to(sentence);
+      self.to(sentence, kind);
    else
       std::fprintf(stderr, "%s\n", sentence.c_str());
 }
@@ -41,6 +44,18 @@ void setPluginWarnings(PluginWarnings to)
    const std::lock_guard lock(self.mutex);
    self.to = std::move(to);
    self.told.clear();
+}
+
+RemarksMuted::RemarksMuted()
+{
+   const std::lock_guard lock(warned().mutex);
+   ++warned().muted;
+}
+
+RemarksMuted::~RemarksMuted()
+{
+   const std::lock_guard lock(warned().mutex);
+   --warned().muted;
 }
 
 } // namespace diatom

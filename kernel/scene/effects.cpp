@@ -64,10 +64,11 @@ Verdict lookRotation(const Look &look)
 {
    if (look.hierarchy.cells() < 2)
       return {false, "a single cell has no bond that could turn", {}};
-   return {true,
-           "bonded cells may turn by any angle; the law is exact for all of them and costs the same for "
-           "small ones, so that switching it off saves nothing",
-           cellsWhere(look, [](Cell) { return true; })};
+   return {
+       true,
+       "bonded cells may turn by any angle, and the law is exact for all; where no turn matters, switching "
+       "it off takes strains to be linear, at a fraction of the cost",
+       cellsWhere(look, [](Cell) { return true; })};
 }
 
 Verdict lookGravity(const Look &look)

@@ -124,7 +124,7 @@ std::vector<EffectScene> effectScenes()
    Design bare = grounded(0);
    bare.setup.ground.present = false;
    return {
-       changed("rotation", "switched off and on: one law for all turns", small,
+       changed("rotation", "strains linear in turns, and exact for any turn", small,
                [](Edit &e) { e.setup.effects.erase("rotation"); }),
        changed("damping", "damping ratio 0.1", block(),
                [](Edit &e) { e.material([](Material &one) { one.dampingRatio = 0.1; }); }),

@@ -2,6 +2,7 @@
 
 #include "core/clock.h"
 #include "core/text.h"
+#include "plugins/warnings.h"
 #include "study/effects_scenes.h"
 #include "study/trial.h"
 
@@ -53,6 +54,7 @@ private:
    std::vector<Subject> m_subjects;
    std::vector<std::unique_ptr<Simulation>> m_simulations;
    std::vector<std::vector<double>> m_seconds; // of a step, by runner and turn
+   RemarksMuted m_muted;                       // a scene without rotation is run to see what rotation costs
 };
 
 Status Race::enter(const Design &design)

@@ -345,7 +345,7 @@ void FaultsTest::whoIgnoresCancelIsNamed()
    const fs::path released = root() / "released"; // the plugin goes on until it is there
    std::mutex mutex;
    std::string warned;
-   setPluginWarnings([&](const std::string &text) {
+   setPluginWarnings([&](const std::string &text, PluginWarning) {
       const std::lock_guard lock(mutex);
       warned += text;
       (void)writeFileAtomic(released, "told");
@@ -377,7 +377,7 @@ void FaultsTest::theProcessIsAsBefore()
    };
    QCOMPARE(use("test.echo").substr(0, 9), std::string("test.echo")); // loaded: the trial is over
    std::string warned;
-   setPluginWarnings([&](const std::string &text) { warned += text + "\n"; });
+   setPluginWarnings([&](const std::string &text, PluginWarning) { warned += text + "\n"; });
    const fs::path folder = fs::current_path();
    const std::string locale = std::setlocale(LC_ALL, nullptr);
    volatile double smallest = std::numeric_limits<double>::denorm_min();

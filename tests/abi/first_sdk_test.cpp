@@ -171,7 +171,7 @@ void FirstSdkTest::fastMathStaysInThePlugin()
 {
    const auto catalogue = samplesOf("fast_math");
    std::string warned;
-   setPluginWarnings([&](const std::string &text) { warned += text; });
+   setPluginWarnings([&](const std::string &text, PluginWarning) { warned += text; });
    const Towers towers(*catalogue);
    setPluginWarnings({});
    volatile double smallest = std::numeric_limits<double>::denorm_min();

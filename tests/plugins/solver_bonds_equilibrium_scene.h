@@ -17,7 +17,7 @@ inline HandScene bar(int bonds, double pitch, Props material)
    scene.addBlock(bonds + 1, 1, 1);
    scene.link();
    scene.fix(0);
-   scene.effects = {"loads"};
+   scene.effects = {"rotation", "loads"};
    return scene;
 }
 

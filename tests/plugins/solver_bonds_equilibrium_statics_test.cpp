@@ -148,7 +148,7 @@ int leeFrame(const json &reference, HandScene &scene)
    scene.link();
    for (int i = 0; i < scene.cells(); ++i)
       scene.fix(i, i == 0 || i + 1 == scene.cells() ? 0b101111 : 0b101010);
-   scene.effects = {"loads"};
+   scene.effects = {"rotation", "loads"};
    return scene.at[{reference.at("nl").get<int>(), 0, n}];
 }
 
@@ -224,7 +224,7 @@ void SolverBondsEquilibriumStaticsTest::flexureMovesAsTheReference()
          const double l = reference.at("lattice").at("pitch");
          HandScene scene(l);
          scene.analysis = "statics";
-         scene.effects = {"loads"};
+         scene.effects = {"rotation", "loads"};
          for (const char *material : {"S", "H"})
             scene.addMaterial(fifteen(reference.at("materials").at(material).at("k"), 1000));
          for (const json &cell : reference.at("cells"))

@@ -107,7 +107,7 @@ void SolverBondsEquilibriumSupportsTest::actuatorsReachTheirFreeShape()
 {
    for (int mode = 0; mode < 4; ++mode) {
       HandScene scene = bar(2, 1e-3, kRubber);
-      scene.effects = {"actuation"};
+      scene.effects = {"rotation", "actuation"};
       scene.addRow("source", {1, 1, 0, 1, 0, 1}, 0);
       scene.addRow("actuator", {double(mode), 0, 0.4, 0, -1}, 1); // strain 0.2 of the middle cell
       Run run(scene);
@@ -134,7 +134,7 @@ void SolverBondsEquilibriumSupportsTest::blocksSinkIntoTheGround()
    scene.addBlock(3, 3, 1);
    scene.link();
    scene.fix(0, 0b100011);
-   scene.effects = {"gravity", "ground"};
+   scene.effects = {"rotation", "gravity", "ground"};
    scene.addRow("gravity", {0, 0, -9.81});
    scene.addRow("ground", {-l / 2, 2000, 0, 0});
    Run run(scene);
@@ -195,7 +195,7 @@ void SolverBondsEquilibriumSupportsTest::hugeContrastsBalance()
    }
    HandScene scene(l);
    scene.analysis = "statics";
-   scene.effects = {"gravity"};
+   scene.effects = {"rotation", "gravity"};
    scene.addMaterial(kRubber);
    scene.addMaterial(steel);
    scene.addBlock(6, 6, 12);
@@ -231,7 +231,7 @@ void SolverBondsEquilibriumSupportsTest::denseBlocksBalanceWithTheSameBitsOnAnyT
    for (const auto &[at, cell] : scene.at)
       if (at[0] == 0)
          scene.fix(cell);
-   scene.effects = {"gravity"};
+   scene.effects = {"rotation", "gravity"};
    scene.addRow("gravity", {0, 0, -9.81});
    std::vector<double> places[2];
    for (const int threads : {1, 2}) {
@@ -271,7 +271,7 @@ void SolverBondsEquilibriumSupportsTest::wrongQuestionsAreRefusedInOneSentence()
        "do not ascend"));
    QVERIFY(refused(
        [](HandScene &s) {
-          s.effects = {"ground", "friction"};
+          s.effects = {"rotation", "ground", "friction"};
           s.addRow("ground", {0, 1000, 0, 0.5});
        },
        "friction"));

@@ -89,7 +89,7 @@ void SolverBondsImplicitChoiceTest::slowMotionTakesLongSteps()
       scene.addRow("curve", {k / 200.0, 5e-6 * (1 - std::cos(std::numbers::pi * k / 200))}, 0);
    HandScene still = scene;
    still.analysis = "statics";
-   still.effects = {"driven"};
+   still.effects = {"rotation", "driven"};
    Run run(scene, implicit(0.2)), balance(still);
    QCOMPARE(run.to(1), DIATOM_OK);
    QVERIFY2(run.result.state == DIATOM_DONE, run.host.said.c_str());

@@ -140,7 +140,7 @@ void SolverBondsModesTest::loadedColumnsLoseTheirStiffnessAtTheCriticalLoad()
       for (const double factor : {0.0, 0.97, 1.0, 1.03}) {
          HandScene scene = sceneOf(reference, n + 1, 1, 1);
          scene.fix(0);
-         scene.effects = {"loads"};
+         scene.effects = {"rotation", "loads"};
          const double load = s.at("expected_critical_load").at("b");
          scene.addRow("force", {-factor * load, 0, 0, 0, 0, 0}, n);
          Run run(scene, {.modes = 2});
@@ -216,7 +216,7 @@ void SolverBondsModesTest::floatingPartsUnderLoadAreRefused()
    scene.addMaterial({{"density", 1100}, {"youngs_modulus", 5e6}, {"poisson_ratio", 0.3}});
    scene.addBlock(3, 1, 1);
    scene.link();
-   scene.effects = {"gravity"};
+   scene.effects = {"rotation", "gravity"};
    scene.addRow("gravity", {0, 0, -9.81});
    Run run(scene);
    QCOMPARE(run.to(0), DIATOM_BAD_INPUT);

@@ -433,7 +433,7 @@ void SolverBondsMotionTest::skewLinksWorkLikeAlignedOnes()
       scene.addBlock(4, 1, 1);
       scene.link();
       scene.fix(0);
-      scene.effects = {"loads", "damping"};
+      scene.effects = {"rotation", "loads", "damping"};
       if (which == 1)
          for (int i = 0; i < 4; ++i) {
             scene.position[3 * i + 1] = c * scene.position[3 * i];

@@ -48,7 +48,7 @@ void SolverBondsReferenceTest::cantileversBendAsTheClosedForm()
          scene.addBlock(n, 1, 1);
          scene.link();
          scene.fix(0);
-         scene.effects = {"drag", "loads"};
+         scene.effects = {"rotation", "drag", "loads"};
          const int direction = s.at("load_P").at("direction").get<std::string>()[0] - 'x';
          std::vector<double> load(6, 0);
          load[direction] = s.at("load_P").at("P");
@@ -100,7 +100,7 @@ void SolverBondsReferenceTest::dampedOscillatorsFollowTheExactCurve()
       scene.addBlock(2, 1, 1);
       scene.link();
       scene.fix(0);
-      scene.effects = {"damping"};
+      scene.effects = {"rotation", "damping"};
       scene.effects.push_back("actuation");
       scene.addRow("source", {1, 1, 0, 1, 0, 2}, 0); // always 1 V
       scene.addRow("actuator", {axial ? 0.0 : 3.0, 0, 2 * amplitude / (axial ? l : 1), 0, -1}, 0);
@@ -264,7 +264,7 @@ HandScene contactScene(const json &file, double k, double c, double mu)
    scene.addMaterial({{"density", m / (l * l * l)}, {"youngs_modulus", 1e6}});
    scene.addCell(0, 0, 0);
    scene.fix(0, 0x38);
-   scene.effects = {"gravity", "ground"};
+   scene.effects = {"rotation", "gravity", "ground"};
    if (mu > 0)
       scene.effects.push_back("friction");
    scene.addRow("gravity", {0, 0, -9.81});

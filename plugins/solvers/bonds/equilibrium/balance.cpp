@@ -298,9 +298,7 @@ void advance(const State &from, const Vector &change, double factor, State &to)
       const double *d = change.data() + 6 * i;
       for (int k = 0; k < 3; ++k)
          to.column(k)[i] = from.column(k)[i] + factor * d[k];
-      const Quat q = exponential(factor * Vec3{d[3], d[4], d[5]}) * from.turnOf(i);
-      const double f = 1 / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-      to.setTurn(i, {f * q.w, f * q.x, f * q.y, f * q.z});
+      to.setTurnedOn(i, from.turnOf(i), factor * Vec3{d[3], d[4], d[5]});
    }
 }
 

@@ -99,9 +99,6 @@ private:
    mutable std::vector<BondLoad> m_bondLoads; // room for internal()
 };
 
-/// Rotation vector of a unit quaternion, the shorter of the two.
-Vec3 logarithm(Quat q);
-
 /// Moves by `factor` times the displacements and spins in `change`.
 void advance(const State &from, const Vector &change, double factor, State &to);
 

@@ -1,8 +1,6 @@
 // What pulls at a scene at a time, and how it is changed between two balances.
 #include "equilibrium/balance.h"
 
-#include "model/bond_kernel.h"
-
 #include <cmath>
 #include <string>
 
@@ -24,14 +22,6 @@ void mix(const Column &a, const Column &b, double f, Column &out)
 }
 
 } // namespace
-
-Vec3 logarithm(Quat q)
-{
-   const Vec3 v = q.w < 0 ? -vec(q) : vec(q);
-   double s = 1, p = 0;
-   arcRatio(dot(v, v), std::abs(q.w), s, p);
-   return (2 * s) * v;
-}
 
 Loading blend(const Loading &a, const Loading &b, double f)
 {
@@ -92,7 +82,7 @@ Loading Balance::unloaded(const State &state) const
    if (m_actuation.active())
       out.rest = m_actuation.shape();
    for (const Driven &driven : m_supports.driven()) {
-      const Vec3 u = state.displacementOf(driven.cell), turn = logarithm(state.turnOf(driven.cell));
+      const Vec3 u = state.displacementOf(driven.cell), turn = state.turnVectorOf(driven.cell);
       const double at[6] = {u.x, u.y, u.z, turn.x, turn.y, turn.z};
       out.driven.push_back(at[driven.freedom]);
    }

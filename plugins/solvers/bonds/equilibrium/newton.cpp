@@ -20,7 +20,7 @@ constexpr double kRoundingResidual = 1e-5;
 bool passesHalfTurn(const Assembly &assembly, const State &from, const State &to)
 {
    const auto cosine = [](Quat a, Quat b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; };
-   for (std::int64_t i = 0; i < assembly.links; ++i) {
+   for (std::int64_t i = 0; !from.smallTurns && i < assembly.links; ++i) {
       const std::int64_t a = assembly.a[i], b = assembly.b[i];
       const double before = cosine(from.turnOf(a), from.turnOf(b)),
                    after = cosine(to.turnOf(a), to.turnOf(b));

@@ -53,7 +53,11 @@ void Readout::read(const Reading &reading, std::int64_t output, std::int64_t fir
             values[3 * i + k] = assembly.rest[k][first + i] + state.column(k)[first + i];
       break;
    case rotation:
-      columns(3, 4);
+      for (std::int64_t i = 0; i < count; ++i) {
+         const Quat q = state.unitTurnOf(first + i);
+         const double all[4] = {q.w, q.x, q.y, q.z};
+         std::copy_n(all, 4, values + 4 * i);
+      }
       break;
    case velocity:
       columns(7, 3);

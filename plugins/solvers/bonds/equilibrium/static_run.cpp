@@ -1,6 +1,7 @@
 #include "equilibrium/static_run.h"
 
 #include "equilibrium/rigid_motion.h"
+#include "model/large_turns.h"
 
 #include <charconv>
 #include <cmath>
@@ -20,9 +21,9 @@ std::string text(double value)
    return {buffer, end};
 }
 
-State startOf(const sdk::SceneView &scene)
+State startOf(const sdk::SceneView &scene, const Assembly &assembly)
 {
-   State state(scene.cells());
+   State state(assembly.cells, assembly.law);
    startPose(scene, state);
    return state;
 }
@@ -47,8 +48,8 @@ void StaticRun::estimate(const Options &options, const sdk::SceneView &scene, di
 }
 
 StaticRun::StaticRun(const Options &options, const sdk::Values &values, const sdk::SceneView &scene)
-    : m_balance(scene, options), m_state(startOf(scene)), m_statics(m_balance, m_balance.unloaded(m_state)),
-      m_readout(m_balance, {})
+    : m_balance(scene, options), m_state(startOf(scene, m_balance.assembly())),
+      m_statics(m_balance, m_balance.unloaded(m_state)), m_readout(m_balance, {})
 {
    m_options.steps = static_cast<int>(values.number("load_steps"));
    m_internal = m_reaction = Vector::Zero(6 * m_state.n);
@@ -131,6 +132,13 @@ std::int32_t StaticRun::step(const sdk::Call &call, const diatom_step_request &r
                                       (found.negative == 1 ? " direction" : " directions") +
                                       ": the least disturbance leads away from it");
    }
+   const Assembly &assembly = m_balance.assembly();
+   const auto name = [&](std::int64_t bond) {
+      return "the bond of cells " + m_balance.name(assembly.a[bond]) + " and " +
+             m_balance.name(assembly.b[bond]);
+   };
+   if (const auto warning = largeTurnsIn(assembly, m_state, name))
+      call.report(DIATOM_WARNING, *warning);
    return DIATOM_OK;
 }
 

@@ -11,11 +11,11 @@ constexpr double kSmallestLoadStep = 1.0 / 4096;
 /// to, across a limit point.
 constexpr double kMostTurn = 1;
 
-/// Largest turn of a cell from one state to another, rad.
+/// Largest turn of a cell from one state to another, rad; where turns are linear none leads astray.
 double turnBetween(const State &a, const State &b)
 {
    double most = 0;
-   for (std::int64_t i = 0; i < a.n; ++i) {
+   for (std::int64_t i = 0; !a.smallTurns && i < a.n; ++i) {
       const Quat p = a.turnOf(i), q = b.turnOf(i);
       const Vec3 v = p.w * vec(q) - q.w * vec(p) - cross(vec(p), vec(q));
       most = std::max(most, 2 * std::atan2(norm(v), std::abs(p.w * q.w + dot(vec(p), vec(q)))));

@@ -87,7 +87,7 @@ void startPose(const sdk::SceneView &scene, State &state)
       const double *row = pose.row(i);
       for (int k = 0; k < 3; ++k)
          state.displacement(k)[pose.where(i)] = row[k];
-      state.setTurn(pose.where(i), exponential({row[3], row[4], row[5]}));
+      state.setTurnedOn(pose.where(i), {}, {row[3], row[4], row[5]});
    }
 }
 

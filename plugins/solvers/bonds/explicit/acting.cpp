@@ -32,29 +32,31 @@ void add(Column &to, std::int64_t cell, Vec3 force, Vec3 torque)
       at[k] += all[k];
 }
 
-BondForces bondForces(const Assembly &assembly, const State &state, const RestShape *rest, std::int64_t bond,
-                      bool exact)
+BondForces bondForces(const Assembly &assembly, const State &state, const RestShape *rest, std::int64_t bond)
 {
    const Ends ends = endsOf(assembly, state, bond);
    const Vec3 restD = rest ? rest->separation(bond) : Vec3{assembly.length[bond], 0, 0},
               restPhi = rest ? rest->turn(bond) : Vec3{};
    BondForces f;
-   if (exact)
-      evaluate<true, true, true>(ends, assembly.constants[bond], restD, restPhi, f);
+   const BondConstants &k = assembly.constants[bond];
+   if (assembly.law == Law::exact)
+      evaluate<true, true, Law::exact>(ends, k, restD, restPhi, f);
+   else if (assembly.law == Law::simple)
+      evaluate<true, true, Law::simple>(ends, k, restD, restPhi, f);
    else
-      evaluate<true, true, false>(ends, assembly.constants[bond], restD, restPhi, f);
+      evaluate<true, true, Law::small>(ends, k, restD, restPhi, f);
    return f;
 }
 
 } // namespace
 
 Acting actingOn(const Assembly &assembly, const Couplings &couplings, const State &state,
-                const RestShape *rest, const Column &loads, bool exact)
+                const RestShape *rest, const Column &loads)
 {
    Acting out;
    out.internal.assign(static_cast<std::size_t>(6 * assembly.cells), 0);
    for (std::int64_t i = 0; i < assembly.links; ++i) {
-      const BondForces f = bondForces(assembly, state, rest, i, exact);
+      const BondForces f = bondForces(assembly, state, rest, i);
       const Mat3 frame = assembly.frameOf(i);
       const Vec3 force = transposed(frame, f.force);
       add(out.internal, assembly.a[i], force, transposed(frame, f.torqueA));
@@ -97,7 +99,7 @@ Column reactions(const Assembly &assembly, const State &state, const Acting &act
       if (assembly.fixed[i] == 0)
          continue;
       Vec3 turning; // what keeps a box spinning evenly
-      if (assembly.boxes) {
+      if (assembly.boxes && assembly.law != Law::small) {
          const Vec3 w = state.spinOf(i);
          turning = cross(w, spinMomentum(assembly, i, state.turnOf(i), w));
       }

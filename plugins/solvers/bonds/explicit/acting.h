@@ -14,7 +14,7 @@ struct Acting
 
 /// `loads` are six numbers a cell, empty without any; `rest` the actuated rest shape, null without.
 Acting actingOn(const Assembly &assembly, const Couplings &couplings, const State &state,
-                const RestShape *rest, const Column &loads, bool exact);
+                const RestShape *rest, const Column &loads);
 
 /// What supports and drives supply: the force out of balance where a degree of freedom is held, 0 elsewhere.
 Column reactions(const Assembly &assembly, const State &state, const Acting &acting);

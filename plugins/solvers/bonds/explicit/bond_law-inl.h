@@ -33,6 +33,14 @@ HWY_INLINE V nmad(V a, V b, V c)
       return hn::Sub(c, hn::Mul(a, b));
 }
 
+/// What a kernel is made for: dampers, turns that count to first order only, multiplying and adding with one
+/// rounding.
+template<bool kDamped, bool kSmall, bool kFused>
+struct Kind
+{
+   static constexpr bool damped = kDamped, small = kSmall, fused = kFused;
+};
+
 template<class V>
 struct Three
 {
@@ -191,6 +199,48 @@ struct BondOut
    Three<V> atA, atB; // torque on a; torque on b with the opposite sign
    V power;
 };
+
+/// v x (length, 0, 0)
+template<class V>
+HWY_INLINE Three<V> crossArm(const Three<V> &v, V length)
+{
+   return {hn::Xor(length, length), hn::Mul(v.z, length), hn::Neg(hn::Mul(v.y, length))};
+}
+
+/// evaluateSmall() of model/bond_kernel.h.
+template<bool kDamped, bool kGeneral, bool kFused, class D, class V>
+HWY_INLINE BondOut<V> smallLaw(D d, const BondState<V> &in, const BondLaw<V> &k)
+{
+   const V half = hn::Set(d, static_cast<hn::TFromD<D>>(0.5)), length = k.length;
+   Three<V> e = in.du - crossArm(in.a + in.b, length);
+   Three<V> phi = in.b - in.a;
+   phi = phi + phi;
+   if constexpr (kGeneral) {
+      phi = phi - k.turn;
+      e = e + crossArm(scaledTurn(k, phi), length) - k.stretch;
+   }
+   BondOut<V> out;
+   Three<V> force{hn::Mul(k.k.x, e.x), hn::Mul(k.k.y, e.y), hn::Mul(k.k.z, e.z)};
+   Three<V> c{hn::Mul(k.c.x, phi.x), hn::Mul(k.c.y, phi.y), hn::Mul(k.c.z, phi.z)};
+   if constexpr (kDamped) {
+      Three<V> rate = in.dv - crossArm(half * in.sum, length);
+      if constexpr (kGeneral)
+         rate = rate + crossArm(scaledTurn(k, in.dw), length);
+      const Three<V> fd{hn::Mul(k.d.x, rate.x), hn::Mul(k.d.y, rate.y), hn::Mul(k.d.z, rate.z)},
+          cd{hn::Mul(k.e.x, in.dw.x), hn::Mul(k.e.y, in.dw.y), hn::Mul(k.e.z, in.dw.z)};
+      out.power = hn::Add(dot<kFused>(fd, rate), dot<kFused>(cd, in.dw));
+      force = force + fd;
+      c = c + cd;
+   }
+   const Three<V> moment = crossArm(force, length);
+   if constexpr (kGeneral)
+      c = c - scaledTurn(k, moment);
+   const Three<V> g = half * moment;
+   out.force = force;
+   out.atA = c - g;
+   out.atB = c + g;
+   return out;
+}
 
 template<bool kDamped, bool kGeneral, bool kFused, class D, class V>
 HWY_INLINE BondOut<V> bondLaw(D d, BondState<V> in, const BondLaw<V> &k)

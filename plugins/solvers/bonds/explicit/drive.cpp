@@ -41,7 +41,7 @@ void Drive::place(double time, State &state)
          state.displacement(one.freedom)[one.cell] = m_reached[i];
          continue;
       }
-      const Vec3 now = logarithm(state.turnOf(one.cell));
+      const Vec3 now = state.turnVectorOf(one.cell);
       const double angle[3] = {now.x, now.y, now.z};
       Vec3 &turn = turns[one.cell];
       (one.freedom == 3   ? turn.x
@@ -50,7 +50,7 @@ void Drive::place(double time, State &state)
    }
    for (const Led &led : m_cells)
       if (led.mask >> 3)
-         state.setTurn(led.cell, exponential(turns[led.cell]) * state.turnOf(led.cell));
+         state.setTurnedOn(led.cell, state.turnOf(led.cell), turns[led.cell]);
 }
 
 void Drive::lead(const Assembly &assembly, double time, double dt, State &state)
@@ -76,11 +76,8 @@ double Drive::arrive(const Assembly &assembly, double dt, State &state)
    double work = 0;
    for (std::size_t i = 0; i < m_cells.size(); ++i) {
       const std::int64_t cell = m_cells[i].cell;
-      if (assembly.fixed[cell] >> 3 == 7 && m_cells[i].mask >> 3 != 0) { // no other turn than the curves'
-         const Quat q = exponential(dt * state.spinOf(cell)) * m_before[i].turn;
-         const double f = 1 / std::sqrt(q.w * q.w + dot(vec(q), vec(q)));
-         state.setTurn(cell, {f * q.w, f * q.x, f * q.y, f * q.z});
-      }
+      if (assembly.fixed[cell] >> 3 == 7 && m_cells[i].mask >> 3 != 0) // no other turn than the curves'
+         state.setTurnedOn(cell, m_before[i].turn, dt * state.spinOf(cell));
       const auto velocity = sixOf(state.velocityOf(cell), state.spinOf(cell)),
                  momentum = momentumOf(assembly, state, cell);
       for (std::size_t k = 0; k < 6; ++k)

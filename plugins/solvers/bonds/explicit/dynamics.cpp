@@ -39,7 +39,7 @@ void Dynamics::select(unsigned effects, std::integer_sequence<unsigned, Effects.
 
 Dynamics::Dynamics(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
                    const Options &options)
-    : Motion(scene, assembly, couplings, options), m_bonds(assembly, m_actuation.active(), options.exact),
+    : Motion(scene, assembly, couplings, options), m_bonds(assembly, m_actuation.active()),
       m_sums(static_cast<std::size_t>((assembly.cells + kGrain - 1) / kGrain))
 {
    select(effectsOf(assembly, couplings), std::make_integer_sequence<unsigned, 32>());
@@ -117,6 +117,8 @@ void Dynamics::drift(std::int64_t i, double dt)
       m_state.displacement(k)[i] += dt * m_state.velocity(k)[i];
    const Quat q = m_state.turnOf(i);
    Vec3 w = m_state.spinOf(i);
+   if (m_state.smallTurns)
+      return m_state.setTurnedOn(i, q, dt * w);
    if (!m_assembly->boxes) {
       m_state.setTurn(i, renormalised(exponential(dt * w) * q));
       return;
@@ -134,11 +136,14 @@ void Dynamics::stageCell(std::int64_t i, double dt, const StageOfStep &stage, Ve
 {
    const Assembly &assembly = *m_assembly;
    const Vec3 v = m_state.velocityOf(i), w = m_state.spinOf(i);
-   const Quat q = m_state.turnOf(i), turn = Quat{0, w.x, w.y, w.z} * q;
+   const bool small = m_state.smallTurns;
+   const Quat q = m_state.turnOf(i), turn = Quat{0, w.x, w.y, w.z} * (small ? Quat() : q);
    Vec3 spinRate{assembly.inverseInertia[0][i] * torque.x, assembly.inverseInertia[1][i] * torque.y,
                  assembly.inverseInertia[2][i] * torque.z};
-   if (assembly.boxes)
-      spinRate = spinFrom(assembly, i, q, torque - cross(w, spinMomentum(assembly, i, q, w)), {});
+   if (assembly.boxes) {
+      const Vec3 turning = small ? Vec3{} : cross(w, spinMomentum(assembly, i, q, w));
+      spinRate = spinFrom(assembly, i, q, torque - turning, {});
+   }
    const double rate[13] = {v.x,
                             v.y,
                             v.z,
@@ -161,6 +166,8 @@ void Dynamics::stageCell(std::int64_t i, double dt, const StageOfStep &stage, Ve
       m_sum[at] += stage.weight * rate[k];
       m_state.block[at] = m_start[at] + (stage.last ? dt * m_sum[at] : stage.next * rate[k]);
    }
+   if (small)
+      return;
    const Quat now = m_state.turnOf(i);
    const double f = 1 / std::sqrt(now.w * now.w + now.x * now.x + now.y * now.y + now.z * now.z);
    m_state.setTurn(i, {f * now.w, f * now.x, f * now.y, f * now.z});

@@ -4,6 +4,7 @@
 #include "explicit/dynamics.h"
 #include "explicit/stages.h"
 #include "explicit/vector_motion.h"
+#include "model/large_turns.h"
 #include "solid/couplings.h"
 
 #include <charconv>
@@ -40,7 +41,7 @@ std::unique_ptr<Motion> motionFor(const sdk::SceneView &scene, const Assembly &a
                                   const Couplings &couplings, const Options &options)
 {
    const bool single = options.precision == Options::Precision::f32;
-   if (const auto why = whyNotVector(couplings, options)) {
+   if (const auto why = whyNotVector(assembly, couplings, options)) {
       if (single)
          throw Failure(DIATOM_UNSUPPORTED,
                        "there is no single precision for " + *why + ": choose the precision f64");
@@ -78,7 +79,7 @@ void ExplicitRun::estimate(const sdk::Call &call, const Options &options, const 
    const auto cells = static_cast<double>(assembly.cells), links = static_cast<double>(assembly.links);
    // Measured on one 2020s core; of the vector kernel on dense blocks (bench/results), others take up to
    // three times as long.
-   if (whyNotVector(couplings, options)) {
+   if (whyNotVector(assembly, couplings, options)) {
       estimate.bytes = cells * 900 + links * 380;
       estimate.step_seconds = evaluations * (cells * 40e-9 + links * 55e-9);
    } else {
@@ -119,7 +120,7 @@ ExplicitRun::ExplicitRun(const sdk::Call &call, const Options &options, const sd
 
 std::string ExplicitRun::how() const
 {
-   const auto why = whyNotVector(m_couplings, m_options);
+   const auto why = whyNotVector(m_assembly, m_couplings, m_options);
    return "motion in time by " + m_motion->how() + (why ? ", for " + *why : "");
 }
 
@@ -211,6 +212,17 @@ void ExplicitRun::reportDivergence(const sdk::Call &call, double time, double st
                                  " s is kept: use a step below " + text(step / 2) + " s, or damping");
 }
 
+void ExplicitRun::warnOfLargeTurns(const sdk::Call &call)
+{
+   if (m_assembly.law != Law::small || m_warned)
+      return;
+   const auto name = [this](std::int64_t bond) { return whereText(bond, -1); };
+   if (const auto warning = largeTurnsIn(m_assembly, m_motion->state(), name)) {
+      m_warned = true;
+      call.report(DIATOM_WARNING, *warning);
+   }
+}
+
 std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request &request,
                                diatom_step_result &result)
 {
@@ -256,6 +268,7 @@ std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request 
       m_motion->save(m_time);
       call.progress((n + 1) / wanted, "stepping");
    }
+   warnOfLargeTurns(call);
    result.time = m_time;
    if (result.state == DIATOM_RUNNING && m_time >= request.until)
       result.state = DIATOM_DONE;
@@ -275,7 +288,11 @@ void ExplicitRun::read(std::int64_t output, std::int64_t first, std::int64_t cou
          for (int k = 0; k < 3; ++k)
             values[3 * i + k] = m_assembly.rest[k][first + i] + state.column(k)[first + i];
    } else if (output == 1) {
-      rows(3, 4);
+      for (std::int64_t i = 0; i < count; ++i) {
+         const Quat q = state.unitTurnOf(first + i);
+         const double all[4] = {q.w, q.x, q.y, q.z};
+         std::copy_n(all, 4, values + 4 * i);
+      }
    } else if (output == 2) {
       rows(7, 3);
    } else if (output == 3) {

@@ -45,6 +45,7 @@ template<bool Damped>
 inline Ends aligned(const Turned &s, std::int64_t a, std::int64_t b, double length)
 {
    Ends ends;
+   ends.length = length;
    ends.separation = at(s.u, b) - at(s.u, a);
    ends.separation.x += length;
    ends.qa = {s.scalar[a], s.q[0][a], s.q[1][a], s.q[2][a]};
@@ -59,30 +60,30 @@ inline Ends aligned(const Turned &s, std::int64_t a, std::int64_t b, double leng
 
 } // namespace
 
-BondForcesPass::BondForcesPass(const Assembly &assembly, bool actuated, bool exact)
-    : m_assembly(&assembly), m_range(select(assembly.damped, actuated, assembly.coupled, exact)),
-      m_power(static_cast<std::size_t>((assembly.links + kGrain - 1) / kGrain))
+BondForcesPass::BondForcesPass(const Assembly &assembly, bool actuated)
+    : m_assembly(&assembly), m_power(static_cast<std::size_t>((assembly.links + kGrain - 1) / kGrain))
 {
+   const bool damped = assembly.damped, coupled = assembly.coupled;
+   m_range = assembly.law == Law::small    ? select<Law::small>(damped, actuated, coupled)
+             : assembly.law == Law::simple ? select<Law::simple>(damped, actuated, coupled)
+                                           : select<Law::exact>(damped, actuated, coupled);
    for (Column &column : m_out)
       column.resize(static_cast<std::size_t>(assembly.links));
 }
 
-BondForcesPass::Range BondForcesPass::select(bool damped, bool actuated, bool coupled, bool exact)
+template<Law kLaw>
+BondForcesPass::Range BondForcesPass::select(bool damped, bool actuated, bool coupled)
 {
    using Self = BondForcesPass;
-   static constexpr Range kTable[16] = {
-       &Self::range<false, false, false, false>, &Self::range<false, false, false, true>,
-       &Self::range<false, false, true, false>,  &Self::range<false, false, true, true>,
-       &Self::range<false, true, false, false>,  &Self::range<false, true, false, true>,
-       &Self::range<false, true, true, false>,   &Self::range<false, true, true, true>,
-       &Self::range<true, false, false, false>,  &Self::range<true, false, false, true>,
-       &Self::range<true, false, true, false>,   &Self::range<true, false, true, true>,
-       &Self::range<true, true, false, false>,   &Self::range<true, true, false, true>,
-       &Self::range<true, true, true, false>,    &Self::range<true, true, true, true>};
-   return kTable[8 * damped + 4 * actuated + 2 * coupled + exact];
+   static constexpr Range kTable[8] = {
+       &Self::range<false, false, false, kLaw>, &Self::range<false, false, true, kLaw>,
+       &Self::range<false, true, false, kLaw>,  &Self::range<false, true, true, kLaw>,
+       &Self::range<true, false, false, kLaw>,  &Self::range<true, false, true, kLaw>,
+       &Self::range<true, true, false, kLaw>,   &Self::range<true, true, true, kLaw>};
+   return kTable[4 * damped + 2 * actuated + coupled];
 }
 
-template<bool Damped, bool Actuated, bool Coupled, bool Exact>
+template<bool Damped, bool Actuated, bool Coupled, Law kLaw>
 void BondForcesPass::range(const State &state, const RestShape &rest, std::int64_t begin, std::int64_t end,
                            double &power)
 {
@@ -105,7 +106,7 @@ void BondForcesPass::range(const State &state, const RestShape &rest, std::int64
             restPhi = rest.turn(i);
          }
          BondForces f;
-         evaluate<Damped, Coupled, Exact>(ends, assembly.constants[i], restD, restPhi, f);
+         evaluate<Damped, Coupled, kLaw>(ends, assembly.constants[i], restD, restPhi, f);
          if (axis == 3) {
             const Mat3 frame = assembly.frameOf(i);
             f.force = transposed(frame, f.force);

@@ -42,18 +42,19 @@ void inPieces(const sdk::Call &call, bool threads, std::int64_t count, const Bod
 class BondForcesPass
 {
 public:
-   BondForcesPass(const Assembly &assembly, bool actuated, bool exact);
+   BondForcesPass(const Assembly &assembly, bool actuated);
    /// Returns the power dissipated (W).
    double run(const sdk::Call &call, const State &state, const RestShape &rest);
    /// Sum of the bonds of cell i, in bond order.
    void gather(std::int64_t i, Vec3 &force, Vec3 &torque) const;
 
 private:
-   template<bool Damped, bool Actuated, bool Coupled, bool Exact>
+   template<bool Damped, bool Actuated, bool Coupled, Law kLaw>
    void range(const State &state, const RestShape &rest, std::int64_t begin, std::int64_t end, double &power);
    using Range = void (BondForcesPass::*)(const State &, const RestShape &, std::int64_t, std::int64_t,
                                           double &);
-   static Range select(bool damped, bool actuated, bool coupled, bool exact);
+   template<Law kLaw>
+   static Range select(bool damped, bool actuated, bool coupled);
 
    const Assembly *m_assembly;
    Range m_range;

@@ -5,7 +5,7 @@ namespace bonds {
 Motion::Motion(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
                const Options &options)
     : m_assembly(&assembly), m_couplings(&couplings), m_integrator(options.integrator),
-      m_exact(options.exact), m_actuation(scene, assembly), m_drive(scene, assembly), m_state(assembly.cells),
+      m_actuation(scene, assembly), m_drive(scene, assembly), m_state(assembly.cells, assembly.law),
       m_rest(m_actuation.shape()), m_next(m_rest),
       m_counted(couplings.empty() ? RestShape() : m_rest), m_savedAccount{}
 {
@@ -56,10 +56,7 @@ double Motion::restore()
    return m_savedAccount.time;
 }
 
-Acting Motion::acting() const
-{
-   return actingOn(*m_assembly, *m_couplings, state(), rest(), m_loads, m_exact);
-}
+Acting Motion::acting() const { return actingOn(*m_assembly, *m_couplings, state(), rest(), m_loads); }
 
 State Motion::caughtUp(const Acting &acting) const
 {

@@ -68,7 +68,6 @@ protected:
    const Assembly *m_assembly;
    const Couplings *m_couplings;
    Options::Integrator m_integrator;
-   bool m_exact;
    Actuation m_actuation;
    Drive m_drive;
    mutable State m_state;

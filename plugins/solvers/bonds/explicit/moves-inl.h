@@ -31,42 +31,46 @@ HWY_INLINE double total(T (&lanes)[kBlock])
 }
 
 /// Moves columns on by their rates, or from their start by all of the step's.
-template<bool kFused, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+template<class K, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE V staged(D d, const SweepWork<T> &work, const Move &move, std::size_t at, V rate)
 {
    T *const start = work.start + at, *const sum = work.sum + at;
    const V now = hn::LoadU(d, work.state + at);
    const V from = move.first ? now : hn::LoadU(d, start);
-   const V all = mad<kFused>(setTo(d, move.weight), rate, move.first ? hn::Zero(d) : hn::LoadU(d, sum));
+   const V all = mad<K::fused>(setTo(d, move.weight), rate, move.first ? hn::Zero(d) : hn::LoadU(d, sum));
    if (move.first)
       hn::StoreU(from, d, start);
    if (move.last)
-      return mad<kFused>(setTo(d, move.drift), all, from);
+      return mad<K::fused>(setTo(d, move.drift), all, from);
    hn::StoreU(all, d, sum);
-   return mad<kFused>(setTo(d, move.next), rate, from);
+   return mad<K::fused>(setTo(d, move.next), rate, from);
 }
 
-template<bool kFused, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+template<class K, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_NOINLINE void stageCells(D d, const SweepWork<T> &work, std::size_t cell, const Move &move, Three<V> v,
                              Three<V> w, Three<V> acceleration, Three<V> turning)
 {
    const std::size_t stride = work.stride;
    T *const at = work.state + cell;
    const auto three3 = [&](std::size_t column, Three<V> rate) HWY_ATTR {
-      return Three<V>{staged<kFused>(d, work, move, cell + column * stride, rate.x),
-                      staged<kFused>(d, work, move, cell + (column + 1) * stride, rate.y),
-                      staged<kFused>(d, work, move, cell + (column + 2) * stride, rate.z)};
+      return Three<V>{staged<K>(d, work, move, cell + column * stride, rate.x),
+                      staged<K>(d, work, move, cell + (column + 1) * stride, rate.y),
+                      staged<K>(d, work, move, cell + (column + 2) * stride, rate.z)};
    };
    const V half = setTo(d, 0.5), qw = hn::LoadU(d, at + 3 * stride);
    const Three<V> q = three(d, at + 4 * stride, stride, kWorld);
-   const V rateW = hn::Neg(hn::Mul(half, dot<kFused>(w, q)));
-   const Three<V> rateQ = half * mad<kFused>(qw, w, cross<kFused>(w, q));
    storeThree(d, three3(0, v), at, stride);
-   const V nw = staged<kFused>(d, work, move, cell + 3 * stride, rateW);
-   const Three<V> nq = three3(4, rateQ);
-   const V f = hn::Div(setTo(d, 1), hn::Sqrt(mad<kFused>(nw, nw, dot<kFused>(nq, nq))));
-   hn::StoreU(hn::Mul(f, nw), d, at + 3 * stride);
-   storeThree(d, f * nq, at + 4 * stride, stride);
+   if constexpr (K::small) {
+      storeThree(d, three3(4, half * w), at + 4 * stride, stride);
+   } else {
+      const V rateW = hn::Neg(hn::Mul(half, dot<K::fused>(w, q)));
+      const Three<V> rateQ = half * mad<K::fused>(qw, w, cross<K::fused>(w, q));
+      const V nw = staged<K>(d, work, move, cell + 3 * stride, rateW);
+      const Three<V> nq = three3(4, rateQ);
+      const V f = hn::Div(setTo(d, 1), hn::Sqrt(mad<K::fused>(nw, nw, dot<K::fused>(nq, nq))));
+      hn::StoreU(hn::Mul(f, nw), d, at + 3 * stride);
+      storeThree(d, f * nq, at + 4 * stride, stride);
+   }
    storeThree(d, three3(7, acceleration), at + 7 * stride, stride);
    storeThree(d, three3(10, turning), at + 10 * stride, stride);
 }
@@ -80,25 +84,27 @@ HWY_INLINE V powerOf(D d, const T *load, std::size_t stride, Three<V> v, Three<V
 
 /// What the torque of bonds, loads and drag makes of the spin of boxes: its rate in a stage, otherwise its
 /// change over the kick.
-template<bool kFused, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+template<class K, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_NOINLINE Three<V> turningOfBoxes(D d, const SweepWork<T> &work, std::size_t cell, Three<V> w,
                                      Three<V> torque, const Move &move)
 {
    const std::size_t stride = work.stride;
-   const auto boxes = boxesOf<kFused>(d, work, cell, turnAt(d, work.state + cell + 3 * stride, stride));
+   const auto boxes =
+       boxesOf<K::fused>(d, work, cell, inertiaTurn<K>(d, work.state + cell + 3 * stride, stride));
    if (work.loads)
       torque = torque + three(d, work.loads + cell + 3 * stride, stride, kWorld);
    if (work.drag != 0)
-      torque = nmad<kFused>(hn::Set(d, work.drag),
-                            boxes.momentum(three(d, work.rate + cell + 3 * stride, stride, kWorld)), torque);
+      torque =
+          nmad<K::fused>(hn::Set(d, work.drag),
+                         boxes.momentum(three(d, work.rate + cell + 3 * stride, stride, kWorld)), torque);
    const Three<V> momentum = boxes.momentum(w);
    if (move.stage)
-      return boxes.spin(torque - cross<kFused>(w, momentum));
-   return setTo(d, 1 / move.kick) * (boxes.spin(mad<kFused>(setTo(d, move.kick), torque, momentum)) - w);
+      return boxes.spin(K::small ? torque : torque - cross<K::fused>(w, momentum));
+   return setTo(d, 1 / move.kick) * (boxes.spin(mad<K::fused>(setTo(d, move.kick), torque, momentum)) - w);
 }
 
 /// Kicks, and drifts, the cells [at, at + lanes).
-template<bool kFused, class D, typename T = hn::TFromD<D>>
+template<class K, class D, typename T = hn::TFromD<D>>
 HWY_INLINE void moveCells(D d, const SweepWork<T> &work, std::size_t cell, const Move &move, const T *atLo,
                           const T *atHi, std::size_t hiStride, LaneSums<T> &sums, std::size_t lane)
 {
@@ -113,8 +119,8 @@ HWY_INLINE void moveCells(D d, const SweepWork<T> &work, std::size_t cell, const
    Three<V> move3 = im * force, turn3 = ii * torque;
    if (work.loads) {
       const T *load = work.loads + cell;
-      move3 = mad<kFused>(im, three(d, load, stride, kWorld), move3);
-      turn3 = mad<kFused>(ii, three(d, load + 3 * stride, stride, kWorld), turn3);
+      move3 = mad<K::fused>(im, three(d, load, stride, kWorld), move3);
+      turn3 = mad<K::fused>(ii, three(d, load + 3 * stride, stride, kWorld), turn3);
    }
    move3 = move3 +
            Three<V>{hn::Set(d, work.gravity[0]), hn::Set(d, work.gravity[1]), hn::Set(d, work.gravity[2])};
@@ -122,28 +128,28 @@ HWY_INLINE void moveCells(D d, const SweepWork<T> &work, std::size_t cell, const
       const V drag = hn::Set(d, work.drag);
       const T *rate = work.rate + cell;
       const Three<V> rv = three(d, rate, stride, kWorld), rw = three(d, rate + 3 * stride, stride, kWorld);
-      move3 = nmad<kFused>(drag, rv, move3);
-      turn3 = nmad<kFused>(drag, rw, turn3);
-      V turning = hn::Div(dot<kFused>(rw, rw), ii);
+      move3 = nmad<K::fused>(drag, rv, move3);
+      turn3 = nmad<K::fused>(drag, rw, turn3);
+      V turning = hn::Div(dot<K::fused>(rw, rw), ii);
       if (work.boxes)
-         turning =
-             dot<kFused>(rw, boxesOf<kFused>(d, work, cell, turnAt(d, at + 3 * stride, stride)).momentum(rw));
-      const V power = hn::Add(hn::Div(dot<kFused>(rv, rv), im), turning);
-      hn::StoreU(mad<kFused>(drag, power, hn::LoadU(d, sums.drag + lane)), d, sums.drag + lane);
+         turning = dot<K::fused>(
+             rw, boxesOf<K::fused>(d, work, cell, inertiaTurn<K>(d, at + 3 * stride, stride)).momentum(rw));
+      const V power = hn::Add(hn::Div(dot<K::fused>(rv, rv), im), turning);
+      hn::StoreU(mad<K::fused>(drag, power, hn::LoadU(d, sums.drag + lane)), d, sums.drag + lane);
    }
    if (HWY_UNLIKELY(work.boxes != nullptr))
-      turn3 = turningOfBoxes<kFused>(d, work, cell, w, torque, move);
+      turn3 = turningOfBoxes<K>(d, work, cell, w, torque, move);
    if (HWY_UNLIKELY(anyHeld<T>(work.held + cell, hn::Lanes(d))))
       hold(d, work.held + cell, move3, turn3);
    if (HWY_UNLIKELY(move.stage)) {
       if (work.loads)
          hn::StoreU(hn::Add(hn::LoadU(d, sums.load + lane), powerOf(d, work.loads + cell, stride, v, w)), d,
                     sums.load + lane);
-      return stageCells<kFused>(d, work, cell, move, v, w, move3, turn3);
+      return stageCells<K>(d, work, cell, move, v, w, move3, turn3);
    }
    const V kick = setTo(d, move.kick);
-   v = mad<kFused>(kick, move3, v);
-   w = mad<kFused>(kick, turn3, w);
+   v = mad<K::fused>(kick, move3, v);
+   w = mad<K::fused>(kick, turn3, w);
    if (move.predict) {
       storeThree(d, v, work.rate + cell, stride);
       storeThree(d, w, work.rate + cell + 3 * stride, stride);
@@ -155,7 +161,7 @@ HWY_INLINE void moveCells(D d, const SweepWork<T> &work, std::size_t cell, const
       hn::StoreU(hn::Add(hn::LoadU(d, sums.load + lane), powerOf(d, work.loads + cell, stride, v, w)), d,
                  sums.load + lane);
    if (move.drift > 0 && !work.afterKick)
-      driftCells<kFused>(d, work, cell, v, w, move.drift);
+      driftCells<K>(d, work, cell, v, w, move.drift);
 }
 
 } // namespace bonds::HWY_NAMESPACE

@@ -50,7 +50,7 @@ inline Needs needsOf(const Run &run)
    return run.axis == 3 ? Needs::frame : Needs::nothing;
 }
 
-template<bool kDamped, Needs kNeeds, bool kFused, class D, typename T = hn::TFromD<D>>
+template<class K, Needs kNeeds, class D, typename T = hn::TFromD<D>>
 HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
 {
    using V = hn::Vec<D>;
@@ -71,7 +71,7 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
       law.length = constant(kLength);
       law.k = {constant(kAxial), constant(kAxial + 1), constant(kAxial + 2)};
       law.c = {constant(kTorsion), constant(kTorsion + 1), constant(kTorsion + 2)};
-      if constexpr (kDamped) {
+      if constexpr (K::damped) {
          law.d = {constant(kDamping), constant(kDamping + 1), constant(kDamping + 2)};
          law.e = {constant(kDamping + 3), constant(kDamping + 4), constant(kDamping + 5)};
       }
@@ -98,7 +98,7 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
             }
       const auto inAxes = [&](Three<V> v) HWY_ATTR {
          if constexpr (kNeeds != Needs::nothing)
-            return askew ? rotate<kFused>(frame, v) : v;
+            return askew ? rotate<K::fused>(frame, v) : v;
          else
             return v;
       };
@@ -106,11 +106,13 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
       const T *a = ends.a + at, *b = ends.b + at;
       BondState<V> state;
       state.du = inAxes(three(d, b, stride, order) - three(d, a, stride, order));
-      state.aw = hn::LoadU(d, a + 3 * stride);
-      state.bw = hn::LoadU(d, b + 3 * stride);
+      if constexpr (!K::small) {
+         state.aw = hn::LoadU(d, a + 3 * stride);
+         state.bw = hn::LoadU(d, b + 3 * stride);
+      }
       state.a = inAxes(three(d, a + 4 * stride, stride, order));
       state.b = inAxes(three(d, b + 4 * stride, stride, order));
-      if constexpr (kDamped) {
+      if constexpr (K::damped) {
          const T *ra = ends.rateA + at, *rb = ends.rateB + at;
          state.dv = inAxes(three(d, rb, stride, order) - three(d, ra, stride, order));
          const Three<V> wa = three(d, ra + 3 * stride, stride, order),
@@ -118,12 +120,16 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
          state.dw = inAxes(wb - wa);
          state.sum = inAxes(wa + wb);
       }
-      BondOut<V> out = bondLaw<kDamped, kGeneral, kFused>(d, state, law);
+      BondOut<V> out;
+      if constexpr (K::small)
+         out = smallLaw<K::damped, kGeneral, K::fused>(d, state, law);
+      else
+         out = bondLaw<K::damped, kGeneral, K::fused>(d, state, law);
       if constexpr (kNeeds != Needs::nothing)
          if (askew) {
-            out.force = rotateBack<kFused>(frame, out.force);
-            out.atA = rotateBack<kFused>(frame, out.atA);
-            out.atB = rotateBack<kFused>(frame, out.atB);
+            out.force = rotateBack<K::fused>(frame, out.force);
+            out.atA = rotateBack<K::fused>(frame, out.atA);
+            out.atB = rotateBack<K::fused>(frame, out.atB);
          }
       if (HWY_UNLIKELY(there != (2u << (lanes - 1)) - 1)) { // a bond that is not there may be no number
          std::uint8_t bits[8] = {static_cast<std::uint8_t>(there), static_cast<std::uint8_t>(there >> 8)};
@@ -131,14 +137,14 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
          for (Three<V> *v : {&out.force, &out.atA, &out.atB})
             *v = {hn::IfThenElseZero(mask, v->x), hn::IfThenElseZero(mask, v->y),
                   hn::IfThenElseZero(mask, v->z)};
-         if constexpr (kDamped)
+         if constexpr (K::damped)
             out.power = hn::IfThenElseZero(mask, out.power);
       }
       addThree(d, ends.outA + at, ends.outStrideA, order, out.force);
       addThree(d, ends.outA + 3 * ends.outStrideA + at, ends.outStrideA, order, out.atA);
       takeThree(d, ends.outB + at, ends.outStrideB, order, out.force);
       takeThree(d, ends.outB + 3 * ends.outStrideB + at, ends.outStrideB, order, out.atB);
-      if constexpr (kDamped)
+      if constexpr (K::damped)
          hn::StoreU(hn::Add(hn::LoadU(d, power + at), out.power), d, power + at);
    }
 }
@@ -207,7 +213,7 @@ private:
 /// The columns of an end of a listed run's bonds, side by side, kBlock apart. One number after another:
 /// gathering instructions take longer (measured on Zen 5), and compilers choose them for a loop that they see
 /// through.
-template<bool kDamped, typename T>
+template<class K, typename T>
 HWY_INLINE void gather(const SweepWork<T> &work, const std::uint32_t *places, std::size_t count, T *in)
 {
    for (std::size_t i = 0; i < count; ++i) {
@@ -216,7 +222,7 @@ HWY_INLINE void gather(const SweepWork<T> &work, const std::uint32_t *places, st
       const T *from = work.state + place;
       for (std::size_t k = 0; k < 7; ++k)
          in[k * kBlock + i] = from[k * work.stride];
-      if constexpr (kDamped) {
+      if constexpr (K::damped) {
          from = work.rate + place;
          for (std::size_t k = 0; k < 6; ++k)
             in[(7 + k) * kBlock + i] = from[k * work.stride];
@@ -225,7 +231,7 @@ HWY_INLINE void gather(const SweepWork<T> &work, const std::uint32_t *places, st
 }
 
 /// A run whose cells lie anywhere: copied together, and its forces spread in order.
-template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
+template<class K, class D, typename T = hn::TFromD<D>>
 HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *outA, std::size_t outStrideA,
                             T *outB, std::size_t outStrideB, std::uint32_t firstA, std::uint32_t firstB,
                             bool apart, T *power)
@@ -241,7 +247,7 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
       if (near) {
          pickedLo.take(lo, run.lanes);
          pickedHi.take(hi, run.lanes);
-         for (int k = 0; k < (kDamped ? 13 : 7); ++k) {
+         for (int k = 0; k < (K::damped ? 13 : 7); ++k) {
             const T *column = k < 7 ? work.state + k * work.stride : work.rate + (k - 7) * work.stride;
             hn::Store(pickedLo.pick(d, column), d, in[0] + k * kBlock);
             hn::Store(pickedHi.pick(d, column), d, in[1] + k * kBlock);
@@ -250,8 +256,8 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
    }
    if (!near) {
       const std::size_t whole = hwy::RoundUpTo(count, hn::Lanes(d));
-      gather<kDamped>(work, lo, whole, in[0]);
-      gather<kDamped>(work, hi, whole, in[1]);
+      gather<K>(work, lo, whole, in[0]);
+      gather<K>(work, hi, whole, in[1]);
    }
    EndPlaces<T> ends{in[0],  in[1], in[0] + 7 * kBlock, in[1] + 7 * kBlock, out[0], out[1], kBlock,
                      kBlock, kBlock};
@@ -263,13 +269,13 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
    }
    switch (needsOf(run)) {
    case Needs::nothing:
-      bondsOfRun<kDamped, Needs::nothing, kFused>(d, work, run, ends, power);
+      bondsOfRun<K, Needs::nothing>(d, work, run, ends, power);
       break;
    case Needs::frame:
-      bondsOfRun<kDamped, Needs::frame, kFused>(d, work, run, ends, power);
+      bondsOfRun<K, Needs::frame>(d, work, run, ends, power);
       break;
    case Needs::any:
-      bondsOfRun<kDamped, Needs::any, kFused>(d, work, run, ends, power);
+      bondsOfRun<K, Needs::any>(d, work, run, ends, power);
       break;
    }
    if (apart)
@@ -289,20 +295,19 @@ HWY_NOINLINE void listedRun(D d, const SweepWork<T> &work, const Run &run, T *ou
       }
 }
 
-template<bool kDamped, Needs kNeeds, bool kFused, class D, typename T = hn::TFromD<D>>
+template<class K, Needs kNeeds, class D, typename T = hn::TFromD<D>>
 HWY_NOINLINE void otherRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
 {
-   bondsOfRun<kDamped, kNeeds, kFused>(d, work, run, ends, power);
+   bondsOfRun<K, kNeeds>(d, work, run, ends, power);
 }
 
 /// Adds the forces of a run: at lo from `outA`, which stands for cell firstA, at hi likewise.
-template<bool kDamped, bool kFused, class D, typename T = hn::TFromD<D>>
+template<class K, class D, typename T = hn::TFromD<D>>
 HWY_INLINE void addRun(D d, const SweepWork<T> &work, const Run &run, T *outA, std::size_t outStrideA,
                        T *outB, std::size_t outStrideB, std::uint32_t firstA, std::uint32_t firstB, T *power)
 {
    if (HWY_UNLIKELY(run.flags & Run::listed))
-      return listedRun<kDamped, kFused>(d, work, run, outA, outStrideA, outB, outStrideB, firstA, firstB,
-                                        false, power);
+      return listedRun<K>(d, work, run, outA, outStrideA, outB, outStrideB, firstA, firstB, false, power);
    const EndPlaces<T> ends{work.state + run.lo,
                            work.state + run.hi,
                            work.rate + run.lo,
@@ -314,11 +319,11 @@ HWY_INLINE void addRun(D d, const SweepWork<T> &work, const Run &run, T *outA, s
                            outStrideB};
    const Needs needs = needsOf(run);
    if (HWY_LIKELY(needs == Needs::nothing))
-      bondsOfRun<kDamped, Needs::nothing, kFused>(d, work, run, ends, power);
+      bondsOfRun<K, Needs::nothing>(d, work, run, ends, power);
    else if (needs == Needs::frame)
-      otherRun<kDamped, Needs::frame, kFused>(d, work, run, ends, power);
+      otherRun<K, Needs::frame>(d, work, run, ends, power);
    else
-      otherRun<kDamped, Needs::any, kFused>(d, work, run, ends, power);
+      otherRun<K, Needs::any>(d, work, run, ends, power);
 }
 
 } // namespace bonds::HWY_NAMESPACE

@@ -19,14 +19,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace bonds::HWY_NAMESPACE {
 
-template<bool kFused, typename T>
+template<class K, typename T>
 void drift(const SweepWork<T> &work, const Tile &tile, double dt)
 {
    const Lanes<T> d;
    for (std::size_t cell = tile.cells; cell < tile.cellsEnd; cell += hn::Lanes(d)) {
       T *const at = work.state + cell;
-      driftCells<kFused>(d, work, cell, three(d, at + 7 * work.stride, work.stride, kWorld),
-                         three(d, at + 10 * work.stride, work.stride, kWorld), dt);
+      driftCells<K>(d, work, cell, three(d, at + 7 * work.stride, work.stride, kWorld),
+                    three(d, at + 10 * work.stride, work.stride, kWorld), dt);
    }
 }
 
@@ -73,7 +73,7 @@ private:
    const T *m_columns[kColumns];
 };
 
-template<bool kDamped, bool kFused, typename T>
+template<class K, typename T>
 void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, SweepSums &sums)
 {
    const Lanes<T> d;
@@ -95,12 +95,11 @@ void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, 
          }
          first = begin;
       }
-      Ahead<T> ahead(work, begin + 2 * kChunk, chunk[1].runs - chunk[0].runs, kDamped);
+      Ahead<T> ahead(work, begin + 2 * kChunk, chunk[1].runs - chunk[0].runs, K::damped);
       std::memset(atLo, 0, sizeof atLo);
       for (std::uint32_t r = chunk[0].runs; r < chunk[1].runs; ++r) {
          ahead.fetchSome();
-         addRun<kDamped, kFused>(d, work, work.runs[r], atLo, kChunk, room, hiStride, begin, first,
-                                 lanes.power);
+         addRun<K>(d, work, work.runs[r], atLo, kChunk, room, hiStride, begin, first, lanes.power);
       }
       ahead.fetchSome();
       if (chunk[0].crossings != chunk[1].crossings)
@@ -110,18 +109,18 @@ void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, 
          work.beforeKick(work.context, begin, end, atLo, atHi, hiStride);
       const std::size_t step = hn::Lanes(d);
       for (std::size_t cell = begin; cell < end; cell += step)
-         moveCells<kFused>(d, work, cell, move, atLo + (cell - begin), atHi + (cell - begin), hiStride, lanes,
-                           (cell - begin) % kBlock);
+         moveCells<K>(d, work, cell, move, atLo + (cell - begin), atHi + (cell - begin), hiStride, lanes,
+                      (cell - begin) % kBlock);
       if (work.afterKick && !move.predict && !move.stage) {
          work.afterKick(work.context, begin, end);
          if (move.drift > 0)
             for (std::size_t cell = begin; cell < end; cell += step) {
                T *const at = work.state + cell;
-               driftCells<kFused>(d, work, cell, three(d, at + 7 * work.stride, work.stride, kWorld),
-                                  three(d, at + 10 * work.stride, work.stride, kWorld), move.drift);
+               driftCells<K>(d, work, cell, three(d, at + 7 * work.stride, work.stride, kWorld),
+                             three(d, at + 10 * work.stride, work.stride, kWorld), move.drift);
             }
       }
-      if constexpr (kDamped)
+      if constexpr (K::damped)
          sums.power += total(lanes.power);
       if (work.drag != 0)
          sums.drag += total(lanes.drag);
@@ -130,7 +129,7 @@ void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, 
    }
 }
 
-template<bool kDamped, bool kFused, typename T>
+template<class K, typename T>
 void cross(const SweepWork<T> &work, const Tile &tile, SweepSums &sums)
 {
    const Lanes<T> d;
@@ -142,28 +141,34 @@ void cross(const SweepWork<T> &work, const Tile &tile, SweepSums &sums)
       for (int k = 0; k < 12; ++k)
          std::fill_n(lo + k * work.slotStride, kBlock, T(0));
       if (run.flags & Run::listed)
-         listedRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, 0, 0, true,
-                                    power);
+         listedRun<K>(d, work, run, lo, work.slotStride, hi, work.slotStride, 0, 0, true, power);
       else
-         addRun<kDamped, kFused>(d, work, run, lo, work.slotStride, hi, work.slotStride, run.lo, run.hi,
-                                 power);
+         addRun<K>(d, work, run, lo, work.slotStride, hi, work.slotStride, run.lo, run.hi, power);
    }
    sums.power += total(power);
 }
 
-template<typename T, bool kDamped, bool kFused>
+template<typename T, class K>
 SweepKernel<T> kernelWith()
 {
-   return {&tile<kDamped, kFused, T>, &cross<kDamped, kFused, T>, &drift<kFused, T>,
-           hwy::TargetName(HWY_TARGET)};
+   return {&tile<K, T>, &cross<K, T>, &drift<K, T>, hwy::TargetName(HWY_TARGET)};
+}
+
+template<typename T, bool kDamped, bool kSmall>
+SweepKernel<T> kernelWith(bool fused)
+{
+   return fused ? kernelWith<T, Kind<kDamped, kSmall, true>>()
+                : kernelWith<T, Kind<kDamped, kSmall, false>>();
 }
 
 template<typename T>
 SweepKernel<T> kernelOf(const KernelChoice &choice)
 {
-   if (choice.damped)
-      return choice.fused ? kernelWith<T, true, true>() : kernelWith<T, true, false>();
-   return choice.fused ? kernelWith<T, false, true>() : kernelWith<T, false, false>();
+   if (choice.small)
+      return choice.damped ? kernelWith<T, true, true>(choice.fused)
+                           : kernelWith<T, false, true>(choice.fused);
+   return choice.damped ? kernelWith<T, true, false>(choice.fused)
+                        : kernelWith<T, false, false>(choice.fused);
 }
 
 } // namespace bonds::HWY_NAMESPACE

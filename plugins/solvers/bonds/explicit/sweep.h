@@ -140,7 +140,7 @@ struct SweepKernel
 /// Which of the kernels that were built: `fused` ones multiply and add with one rounding.
 struct KernelChoice
 {
-   bool damped = false, fused = true;
+   bool damped = false, small = false, fused = true; // small: turns count to first order only
    Options::Instructions atMost = Options::Instructions::best;
 };
 

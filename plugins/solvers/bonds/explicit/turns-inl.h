@@ -168,6 +168,16 @@ HWY_INLINE Turn<V> turnAt(D d, const T *q, std::size_t stride)
            hn::LoadU(d, q + 3 * stride)};
 }
 
+/// The turn that boxes' inertia sees: none where turns count to first order only.
+template<class K, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
+HWY_INLINE Turn<V> inertiaTurn(D d, const T *q, std::size_t stride)
+{
+   if constexpr (K::small)
+      return {hn::Set(d, 1), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+   else
+      return turnAt(d, q, stride);
+}
+
 /// Keeps the spin that is held.
 template<class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE Three<V> keptSpin(D d, const std::uint8_t *held, Three<V> before, Three<V> after)
@@ -207,7 +217,7 @@ HWY_NOINLINE void turnBoxes(D d, const SweepWork<T> &work, std::size_t cell, Thr
    storeThree(d, w, at + 10 * stride, stride);
 }
 
-template<bool kFused, class D, typename T = hn::TFromD<D>>
+template<class K, class D, typename T = hn::TFromD<D>>
 HWY_INLINE void driftCells(D d, const SweepWork<T> &work, std::size_t cell, Three<hn::Vec<D>> v,
                            Three<hn::Vec<D>> w, double dt)
 {
@@ -215,10 +225,15 @@ HWY_INLINE void driftCells(D d, const SweepWork<T> &work, std::size_t cell, Thre
    T *const at = work.state + cell;
    const std::size_t stride = work.stride;
    const V step = setTo(d, dt);
-   storeThree(d, mad<kFused>(step, v, three(d, at, stride, kWorld)), at, stride);
+   storeThree(d, mad<K::fused>(step, v, three(d, at, stride, kWorld)), at, stride);
+   if constexpr (K::small) { // half the rotation vector
+      const V half = setTo(d, 0.5 * dt);
+      return storeThree(d, mad<K::fused>(half, w, three(d, at + 4 * stride, stride, kWorld)), at + 4 * stride,
+                        stride);
+   }
    if (HWY_UNLIKELY(work.boxes != nullptr))
-      return turnBoxes<kFused>(d, work, cell, w, dt);
-   const Turn<V> q = turnedBy<kFused>(d, step * w, turnAt(d, at + 3 * stride, stride));
+      return turnBoxes<K::fused>(d, work, cell, w, dt);
+   const Turn<V> q = turnedBy<K::fused>(d, step * w, turnAt(d, at + 3 * stride, stride));
    hn::StoreU(q.w, d, at + 3 * stride);
    storeThree(d, Three<V>{q.x, q.y, q.z}, at + 4 * stride, stride);
 }

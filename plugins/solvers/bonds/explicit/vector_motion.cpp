@@ -7,11 +7,12 @@
 
 namespace bonds {
 
-std::optional<std::string> whyNotVector(const Couplings &couplings, const Options &options)
+std::optional<std::string> whyNotVector(const Assembly &assembly, const Couplings &couplings,
+                                        const Options &options)
 {
    if (!couplings.empty())
       return "solid elements and Poisson's coupling";
-   if (!options.exact)
+   if (assembly.law == Law::simple)
       return "the simple gradient";
    if (options.instructions == Options::Instructions::scalar)
       return "the instructions asked for";
@@ -47,7 +48,8 @@ template<typename T>
 VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assembly,
                               const Couplings &couplings, const Options &options)
     : Motion(scene, assembly, couplings, options), m_layout(assembly, m_actuation.driven(assembly.links)),
-      m_kernel(sweepKernel<T>({assembly.damped, !options.reproducible, options.instructions}))
+      m_kernel(sweepKernel<T>(
+          {assembly.damped, assembly.law == Law::small, !options.reproducible, options.instructions}))
 {
    m_sweep.stride = strideFor<T>(m_layout.places);
    takeCells();

@@ -11,7 +11,8 @@
 namespace bonds {
 
 /// Why the vector kernel cannot move a scene; nothing when it can.
-std::optional<std::string> whyNotVector(const Couplings &couplings, const Options &options);
+std::optional<std::string> whyNotVector(const Assembly &assembly, const Couplings &couplings,
+                                        const Options &options);
 
 template<typename T>
 class VectorMotion : public Motion

@@ -68,6 +68,10 @@ ImplicitRun::ImplicitRun(const Options &options, const sdk::Values &values, cons
       m_motion(m_balance, optionsFrom(values), firstStep(m_balance), startOf(scene, m_balance)),
       m_readout(m_balance, {{"effort", "", 1, 6}}), m_good(m_motion.moment())
 {
+   if (m_balance.assembly().law == Law::small)
+      throw Failure(
+          DIATOM_UNSUPPORTED,
+          "implicit steps always follow rotation: leave the effect on, or choose another integrator");
    if (!options.exact)
       throw Failure(DIATOM_UNSUPPORTED, "implicit steps need the exact gradient: leave gradient at exact");
    if (options.precision == Options::Precision::f32)

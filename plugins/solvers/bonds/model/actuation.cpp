@@ -146,7 +146,7 @@ std::vector<Relation> Actuation::look(const Assembly &assembly, const State &sta
    std::vector<Relation> seen;
    seen.reserve(m_bonds.size());
    for (const std::int64_t bond : m_bonds)
-      seen.push_back(relate(endsOf(assembly, state, bond)));
+      seen.push_back(relationOf(assembly, state, bond));
    return seen;
 }
 

@@ -56,6 +56,7 @@ Assembly::Assembly(const sdk::SceneView &scene, const Options &options)
    if (cells <= 0)
       throw Failure(DIATOM_BAD_INPUT, "the scene has no cells");
    readEffects(scene);
+   law = links > 0 && !scene.hasEffect("rotation") ? Law::small : options.exact ? Law::exact : Law::simple;
    readCells(scene);
    readSupports(scene);
    readBonds(scene, options);

@@ -72,6 +72,8 @@ struct Assembly
    std::vector<std::int64_t> first;
    std::vector<std::int64_t> bondsOf;
 
+   Law law = Law::exact;
+
    // Effects that the scene calls for.
    bool damped = false, coupled = false, actuated = false, hasGravity = false, hasDrag = false,
         hasLoads = false;

@@ -13,6 +13,7 @@ BondEnds bondEnds(const Assembly &assembly, const State &state, std::int64_t bon
    BondEnds ends;
    ends.displacement = frame * (state.displacementOf(b) - state.displacementOf(a));
    ends.length = assembly.length[bond];
+   ends.small = state.smallTurns;
    ends.qa = inAxes(frame, state.turnOf(a));
    ends.qb = inAxes(frame, state.turnOf(b));
    if constexpr (Rates) {

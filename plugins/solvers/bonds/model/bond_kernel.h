@@ -1,11 +1,19 @@
 // Force and torques of one bond: the exact gradient of U = 1/2 d.K d + 1/2 phi.C phi in the middle frame, or
 // for a stepped beam in one nearer to the stiffer end, for any rotation, with damping that acts on strain
-// rates only. Everything is in bond axes: x along the bond at rest.
+// rates only; or that of the same U with strains linear in displacements and turns. Everything is in bond
+// axes: x along the bond at rest.
 #pragma once
 
 #include "model/vector.h"
 
 namespace bonds {
+
+/// What turns do to a bond: all that they do, or less where that is asked for.
+enum class Law {
+   exact,
+   simple, // without what keeps energy at large rotations
+   small   // strains are linear: good for turns whose square is small
+};
 
 /// Stiffnesses of a bond (N/m; N m/rad) and their dampings. `s` moves the elastic centre of each bending
 /// plane towards the softer half, which makes a stepped beam exact: the frame that strains are seen in is the
@@ -22,9 +30,10 @@ struct BondConstants
 struct Ends
 {
    Vec3 separation; // b - a
-   Quat qa, qb;
-   Vec3 dv; // velocity of b minus that of a
+   Quat qa, qb;     // of Law::small: 1 and half the rotation vector
+   Vec3 dv;         // velocity of b minus that of a
    Vec3 wa, wb;
+   double length = 0; // at rest; only Law::small asks
 };
 
 struct BondForces
@@ -44,6 +53,8 @@ struct Relation
    double s;  // x / sin x, x = |phi|/2
    double p;  // (1 - s) / sin^2 x
    Vec3 phi;
+   bool small = false; // turns count to first order: the middle frame is the bond's own
+   Vec3 arm;           // separation at rest; only then
 };
 
 /// x / sin x and (1 - x / sin x) / sin^2 x from sin^2 x and cos x; the series of arcsin below 0.1 rad is
@@ -63,6 +74,15 @@ inline void arcRatio(double nn, double w, double &s, double &p)
    }
 }
 
+/// Rotation vector of a unit quaternion, the shorter of the two.
+inline Vec3 logarithm(Quat q)
+{
+   const Vec3 v = q.w < 0 ? -vec(q) : vec(q);
+   double s = 1, p = 0;
+   arcRatio(dot(v, v), std::abs(q.w), s, p);
+   return (2 * s) * v;
+}
+
 inline Relation relate(const Ends &ends)
 {
    const Quat a = ends.qa;
@@ -79,6 +99,19 @@ inline Relation relate(const Ends &ends)
    arcRatio(dot(r.v, r.v), w, r.s, r.p);
    r.phi = (2 * r.s) * r.v;
    r.half = (1 / (1 + w)) * r.v;
+   return r;
+}
+
+/// As relate(), to first order in the turns: the separation is what is left when the mean turn is taken out.
+inline Relation relateSmall(const Ends &ends)
+{
+   Relation r{};
+   r.middle = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+   r.small = true;
+   r.arm = {ends.length, 0, 0};
+   r.u = ends.separation + cross(r.arm, vec(ends.qa) + vec(ends.qb));
+   r.phi = 2 * (vec(ends.qb) - vec(ends.qa));
+   r.s = 1;
    return r;
 }
 
@@ -127,10 +160,42 @@ inline Vec3 scaled(const double (&k)[3], Vec3 a) { return {k[0] * a.x, k[1] * a.
 /// S c with S = s I + (1 - s) n n^T: from conjugate moments to torques.
 inline Vec3 turned(const Relation &r, Vec3 c) { return r.s * c + (r.p * dot(r.v, c)) * r.v; }
 
-/// bond-model.md "Forces and torques", "Damping". Exact = false drops what keeps energy at large rotations.
-template<bool Damped, bool Coupled, bool Exact>
+/// Separation in the bond's own frame; `phi` is relative to the actuated rest.
+inline Vec3 ownSeparation(const Relation &r, const BondConstants &k, Vec3 phi)
+{
+   return r.small ? r.u + cross(Step::scaledTurn(k, phi), r.arm) : Step(k, phi).to(r.u);
+}
+
+/// evaluate() for Law::small: every term is linear, so that the forces are one matrix times the state.
+template<bool Damped>
+inline void evaluateSmall(const Ends &ends, const BondConstants &k, Vec3 restD, Vec3 restPhi, BondForces &out)
+{
+   const Relation r = relateSmall(ends);
+   const Vec3 phi = r.phi - restPhi;
+   Vec3 f = scaled(k.k, ownSeparation(r, k, phi) - restD), c = scaled(k.c, phi);
+   if constexpr (Damped) {
+      const Vec3 phiRate = ends.wb - ends.wa;
+      const Vec3 dRate =
+          ends.dv + cross(r.arm, 0.5 * (ends.wa + ends.wb)) + cross(Step::scaledTurn(k, phiRate), r.arm);
+      const Vec3 fd = scaled(k.d, dRate), cd = scaled(k.e, phiRate);
+      out.power = dot(fd, dRate) + dot(cd, phiRate);
+      f = f + fd;
+      c = c + cd;
+   }
+   c = c + Step::scaledTurn(k, cross(r.arm, f));
+   const Vec3 g = cross(f, r.arm);
+   out.force = f;
+   out.torqueA = c - 0.5 * g;
+   out.torqueB = -c - 0.5 * g;
+}
+
+/// bond-model.md "Forces and torques", "Damping".
+template<bool Damped, bool Coupled, Law kLaw>
 inline void evaluate(const Ends &ends, const BondConstants &k, Vec3 restD, Vec3 restPhi, BondForces &out)
 {
+   if constexpr (kLaw == Law::small)
+      return evaluateSmall<Damped>(ends, k, restD, restPhi, out);
+   constexpr bool Exact = kLaw == Law::exact;
    const Relation r = relate(ends);
    const Vec3 phi = r.phi - restPhi;
    Step step;
@@ -173,7 +238,7 @@ inline void evaluate(const Ends &ends, const BondConstants &k, Vec3 restD, Vec3 
 /// J stored in a bond.
 inline double bondEnergy(const Relation &r, const BondConstants &k, Vec3 restD, Vec3 restPhi)
 {
-   const Vec3 phi = r.phi - restPhi, d = Step(k, phi).to(r.u) - restD;
+   const Vec3 phi = r.phi - restPhi, d = ownSeparation(r, k, phi) - restD;
    return 0.5 * (dot(scaled(k.k, d), d) + dot(scaled(k.c, phi), phi));
 }
 

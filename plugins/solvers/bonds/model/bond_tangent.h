@@ -13,12 +13,14 @@ struct BondEnds
    Vec3 displacement; // of b minus that of a, since rest
    double length = 0; // at rest
    Quat qa, qb;
-   Vec3 dv, wa, wb; // velocity of b minus that of a, spins; only for damping
+   Vec3 dv, wa, wb;    // velocity of b minus that of a, spins; only for damping
+   bool small = false; // Law::small
 };
 
 /// State of a bond; vectors are in its middle frame but for those of a stepped beam's own.
 struct BondPoint
 {
+   bool small = false; // turns count to first order: the middle frame is the bond's own
    Mat3 middle;
    Vec3 u;                // separation
    Vec3 stretch, phi;     // separation since rest, relative turn
@@ -48,9 +50,23 @@ inline double rateOfP(double nn, double w, double p, double ds)
 
 } // namespace detail
 
+/// Geometry alone, to first order in the turns.
+inline BondPoint smallGeometry(const BondEnds &ends)
+{
+   BondPoint r;
+   r.small = true;
+   r.middle = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+   r.u = {ends.length, 0, 0};
+   r.stretch = ends.displacement + cross(r.u, vec(ends.qa) + vec(ends.qb));
+   r.phi = 2 * (vec(ends.qb) - vec(ends.qa));
+   return r;
+}
+
 /// Geometry alone.
 inline BondPoint bondGeometry(const BondEnds &ends)
 {
+   if (ends.small)
+      return smallGeometry(ends);
    const Quat a = ends.qa;
    Quat b = ends.qb;
    BondPoint r;
@@ -83,7 +99,7 @@ inline Vec3 turned(const BondPoint &r, Vec3 c) { return r.s * c + (r.p * dot(r.v
 /// Its digits are those of `stretch`.
 inline Vec3 ownStrain(const BondPoint &r, const BondConstants &k, Vec3 phi, Vec3 stretch)
 {
-   return stretch + Step(k, phi).change(r.u);
+   return stretch + (r.small ? cross(Step::scaledTurn(k, phi), r.u) : Step(k, phi).change(r.u));
 }
 
 /// Rates of the generalised strains from velocities and spins in the middle frame (bond-model.md, Damping).
@@ -102,7 +118,7 @@ inline BondPoint bondPoint(const BondEnds &ends, const BondConstants &k, Vec3 st
 {
    BondPoint r = bondGeometry(ends);
    const Vec3 phi = r.phi - turn;
-   r.step = Step(k, phi);
+   r.step = r.small ? Step() : Step(k, phi);
    r.ownU = r.step.to(r.u);
    r.ownF = scaled(k.k, ownStrain(r, k, phi, r.stretch - stretch));
    r.c = scaled(k.c, phi);
@@ -131,11 +147,23 @@ inline EndForces endForces(const BondPoint &r)
    return {r.middle * r.f, r.middle * (r.h - 0.5 * r.g), r.middle * (-r.h - 0.5 * r.g)};
 }
 
+/// forceChange() of Law::small: no force turns, no arm moves.
+inline EndForces smallForceChange(const BondPoint &r, const BondConstants &k, Vec3 dv, Vec3 wa, Vec3 wb)
+{
+   Vec3 dd, y, spin;
+   strainRates(r, k, dv, wa, wb, dd, y, spin);
+   const Vec3 df = scaled(k.k, dd), dg = cross(df, r.u);
+   const Vec3 dc = scaled(k.c, y) + Step::scaledTurn(k, cross(r.u, df));
+   return {df, dc - 0.5 * dg, -dc - 0.5 * dg};
+}
+
 /// Change of force and torques, seen from a frame that stays, when the ends move by dv (b minus a) and spin
 /// by wa and wb, all in the middle frame. The derivative of evaluate<false, true, true> in bond_kernel.h,
 /// term by term; `k` may hold stiffness plus damping over a time, for implicit steps.
 inline EndForces forceChange(const BondPoint &r, const BondConstants &k, Vec3 dv, Vec3 wa, Vec3 wb)
 {
+   if (r.small)
+      return smallForceChange(r, k, dv, wa, wb);
    Vec3 dd, y, spin;
    strainRates(r, k, dv, wa, wb, dd, y, spin);
    const Vec3 ownDf = scaled(k.k, dd), moment = cross(r.ownU, r.ownF), da = 0.5 * Step::scaledTurn(k, y);

@@ -11,7 +11,7 @@ namespace {
 
 double energyOf(const Assembly &assembly, const State &state, const RestShape *rest, std::int64_t bond)
 {
-   const Relation r = relate(endsOf(assembly, state, bond));
+   const Relation r = relationOf(assembly, state, bond);
    if (rest)
       return bondEnergy(r, assembly.constants[bond], rest->separation(bond), rest->turn(bond));
    return bondEnergy(r, assembly.constants[bond], {assembly.length[bond], 0, 0}, {});
@@ -72,7 +72,7 @@ Column strains(const Assembly &assembly, const State &state, const RestShape *re
    Column out(static_cast<std::size_t>(assembly.cells), 0);
    for (std::int64_t i = 0; i < assembly.links; ++i) {
       const double length = rest ? rest->d[0][i] : assembly.length[i];
-      const Relation r = relate(endsOf(assembly, state, i));
+      const Relation r = relationOf(assembly, state, i);
       const double strain = std::abs(r.u.x - length) / assembly.length[i];
       for (const std::int64_t cell : {assembly.a[i], assembly.b[i]})
          out[cell] = std::max(out[cell], strain);

@@ -9,7 +9,8 @@ namespace bonds {
 /// Displacements from rest keep their digits however far from the origin a part lies.
 struct State
 {
-   explicit State(std::int64_t cells) : n(cells), block(static_cast<std::size_t>(13 * cells))
+   explicit State(std::int64_t cells, Law law = Law::exact)
+       : n(cells), smallTurns(law == Law::small), block(static_cast<std::size_t>(13 * cells))
    {
       std::fill_n(column(3), n, 1.0);
    }
@@ -31,6 +32,19 @@ struct State
       column(5)[i] = q.y;
       column(6)[i] = q.z;
    }
+   /// Rotation vector.
+   Vec3 turnVectorOf(std::int64_t i) const { return smallTurns ? 2 * vec(turnOf(i)) : logarithm(turnOf(i)); }
+   /// As a unit quaternion.
+   Quat unitTurnOf(std::int64_t i) const { return smallTurns ? exponential(turnVectorOf(i)) : turnOf(i); }
+   /// Sets the turn to what `q` becomes by the rotation vector `v`.
+   void setTurnedOn(std::int64_t i, Quat q, Vec3 v)
+   {
+      if (smallTurns)
+         return setTurn(i, {1, q.x + 0.5 * v.x, q.y + 0.5 * v.y, q.z + 0.5 * v.z});
+      const Quat now = exponential(v) * q;
+      const double f = 1 / std::sqrt(now.w * now.w + dot(vec(now), vec(now)));
+      setTurn(i, {f * now.w, f * now.x, f * now.y, f * now.z});
+   }
    void setSpin(std::int64_t i, Vec3 w)
    {
       spin(0)[i] = w.x;
@@ -39,6 +53,7 @@ struct State
    }
 
    std::int64_t n;
+   bool smallTurns;            // rotation vectors add up: turns are 1 and half of them
    Column block;               // u, turn since rest (w x y z), v, w
    std::array<Column, 2> grip; // m, tangential spring of the ground contact; empty without friction
 };
@@ -49,6 +64,7 @@ inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bo
    const Mat3 frame = assembly.frameOf(bond);
    const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
    Ends ends;
+   ends.length = assembly.length[bond];
    ends.separation = frame * (state.displacementOf(b) - state.displacementOf(a));
    ends.separation.x += assembly.length[bond];
    ends.qa = inAxes(frame, state.turnOf(a));
@@ -59,12 +75,24 @@ inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bo
    return ends;
 }
 
+inline Relation relationOf(const Assembly &assembly, const State &state, std::int64_t bond)
+{
+   const Ends ends = endsOf(assembly, state, bond);
+   return state.smallTurns ? relateSmall(ends) : relate(ends);
+}
+
+/// Own axes of a box cell as it is turned now; turns that only count to first order leave its inertia.
+inline Mat3 ownAxes(const Assembly &assembly, std::int64_t i, Quat turn)
+{
+   return matrix(assembly.law == Law::small ? assembly.orientation[i] : turn * assembly.orientation[i]);
+}
+
 /// Inertia tensor of a box cell as it is turned now, and its inverse, applied to a world vector.
 inline Vec3 spinMomentum(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 w)
 {
    if (!assembly.boxes)
       return assembly.inertia[i] * w;
-   const Mat3 own = matrix(turn * assembly.orientation[i]);
+   const Mat3 own = ownAxes(assembly, i, turn);
    const Vec3 v = transposed(own, w);
    return own * Vec3{assembly.boxInertia[0][i] * v.x, assembly.boxInertia[1][i] * v.y,
                      assembly.boxInertia[2][i] * v.z};
@@ -73,7 +101,7 @@ inline Vec3 spinMomentum(const Assembly &assembly, std::int64_t i, Quat turn, Ve
 /// Spin of a box cell from its angular momentum; where it is held, the spin stays `held`.
 inline Vec3 spinFrom(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 momentum, Vec3 held)
 {
-   const Mat3 own = matrix(turn * assembly.orientation[i]);
+   const Mat3 own = ownAxes(assembly, i, turn);
    const Vec3 v = transposed(own, momentum);
    Vec3 w = own * Vec3{v.x / assembly.boxInertia[0][i], v.y / assembly.boxInertia[1][i],
                        v.z / assembly.boxInertia[2][i]};

@@ -42,13 +42,13 @@ void check(const sdk::SceneView &scene, const Assembly &assembly, std::int64_t c
 }
 
 /// Of a material whose cells couple.
-struct Law
+struct CellLaw
 {
    double youngsModulus = 0, poissonRatio = 0, dampingRatio = 0;
 };
 
 /// Nothing where the material's cells do not couple.
-std::optional<Law> lawOf(const sdk::SceneView &scene, std::int32_t material)
+std::optional<CellLaw> lawOf(const sdk::SceneView &scene, std::int32_t material)
 {
    const bool solid = cellModelOf(scene, material) == CellModel::solid;
    const double asked = scene.property(material, "poisson_coupling");
@@ -67,19 +67,19 @@ std::optional<Law> lawOf(const sdk::SceneView &scene, std::int32_t material)
    if (!(nu < 0.5))
       throw Failure(DIATOM_BAD_INPUT, "material " + std::to_string(material) +
                                           " needs a Poisson ratio below 0.5 to be a solid or coupled");
-   return Law{scene.property(material, "youngs_modulus"), nu, std::isnan(zeta) ? 0 : zeta};
+   return CellLaw{scene.property(material, "youngs_modulus"), nu, std::isnan(zeta) ? 0 : zeta};
 }
 
 } // namespace
 
 Couplings makeCouplings(const sdk::SceneView &scene, const Assembly &assembly)
 {
-   std::vector<std::optional<Law>> laws;
+   std::vector<std::optional<CellLaw>> laws;
    for (std::int32_t m = 0; m < scene.materials(); ++m)
       laws.push_back(lawOf(scene, m));
    std::vector<CoupledCell> cells;
    for (std::int64_t i = 0; i < assembly.cells; ++i) {
-      const std::optional<Law> &law = laws[scene.material(i)];
+      const std::optional<CellLaw> &law = laws[scene.material(i)];
       if (!law)
          continue;
       check(scene, assembly, i);
@@ -91,6 +91,9 @@ Couplings makeCouplings(const sdk::SceneView &scene, const Assembly &assembly)
                        e[0] * e[1] * e[2],
                        {e[1] * e[2], e[2] * e[0], e[0] * e[1]}});
    }
+   if (!cells.empty() && assembly.law == Law::small)
+      throw Failure(DIATOM_UNSUPPORTED,
+                    "solids and Poisson's coupling always follow rotation: leave that effect on");
    Couplings out;
    if (!cells.empty())
       out.push_back(std::make_unique<CellCoupling>(assembly, cells));
