@@ -18,6 +18,8 @@ namespace {
 
 /// Steps between two looks at energy and finiteness; a diverging run is stopped after at most this many.
 constexpr std::int64_t kCheckEvery = 64;
+/// Steps between two looks at what is left out of large turns, which takes as long as some ten steps.
+constexpr std::int64_t kLookEvery = 1024;
 /// Semi-implicit Euler near its limit shows up to 20 times the true energy without growing; beyond this it
 /// has diverged.
 constexpr double kEnergyGrowth = 40;
@@ -212,10 +214,11 @@ void ExplicitRun::reportDivergence(const sdk::Call &call, double time, double st
                                  " s is kept: use a step below " + text(step / 2) + " s, or damping");
 }
 
-void ExplicitRun::warnOfLargeTurns(const sdk::Call &call)
+void ExplicitRun::warnOfLargeTurns(const sdk::Call &call, bool last)
 {
-   if (m_assembly.law != Law::small || m_warned)
+   if (m_assembly.law != Law::small || m_warned || (m_sinceLook < kLookEvery && !last))
       return;
+   m_sinceLook = 0;
    const auto name = [this](std::int64_t bond) { return whereText(bond, -1); };
    if (const auto warning = largeTurnsIn(m_assembly, m_motion->state(), name)) {
       m_warned = true;
@@ -268,10 +271,11 @@ std::int32_t ExplicitRun::step(const sdk::Call &call, const diatom_step_request 
       m_motion->save(m_time);
       call.progress((n + 1) / wanted, "stepping");
    }
-   warnOfLargeTurns(call);
    result.time = m_time;
    if (result.state == DIATOM_RUNNING && m_time >= request.until)
       result.state = DIATOM_DONE;
+   m_sinceLook += result.steps;
+   warnOfLargeTurns(call, result.state == DIATOM_DONE);
    return status;
 }
 

@@ -38,7 +38,7 @@ private:
    const Acting &acting() const;
    bool diverged();
    std::string whereText(std::int64_t bond, std::int64_t cell) const;
-   void warnOfLargeTurns(const sdk::Call &call);
+   void warnOfLargeTurns(const sdk::Call &call, bool last);
    void reportDivergence(const sdk::Call &call, double time, double step, diatom_step_result &result);
 
    Options m_options;
@@ -50,7 +50,7 @@ private:
    double m_time = 0;
    double m_balance = 0;                       // J: stored + dissipated - work at the start
    double m_scale = 0, m_work = 0, m_fall = 0; // J: what has gone in so far
-   std::int64_t m_sinceCheck = 0;
+   std::int64_t m_sinceCheck = 0, m_sinceLook = 0;
    bool m_failed = false, m_warned = false;
    mutable std::optional<Acting> m_acting; // of the present moment, once asked for
    std::array<diatom_output, 9> m_output;

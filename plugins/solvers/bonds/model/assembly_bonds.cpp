@@ -172,6 +172,32 @@ Direction directionOf(const Assembly &cells, std::int32_t a, std::int32_t b)
    return out;
 }
 
+/// Directions and lengths that the scene's bonds have. Those of a lattice are few, but the places that they
+/// are taken from are rounded: bonds that differ by no more than that are made alike, so that they share
+/// constants.
+class Alike
+{
+public:
+   void make(Direction &one)
+   {
+      for (const Direction &known : m_known)
+         if (one.axis == known.axis && std::abs(one.length - known.length) <= kRounding * known.length &&
+             norm(one.unit - known.unit) <= kRounding)
+         {
+            one.unit = known.unit;
+            one.length = known.length;
+            return;
+         }
+      if (m_known.size() < kMost)
+         m_known.push_back(one);
+   }
+
+private:
+   static constexpr double kRounding = 1e-9; // of places up to 10^6 cells away
+   static constexpr std::size_t kMost = 256; // more are no lattice's, and would take long to compare
+   std::vector<Direction> m_known;
+};
+
 double inertiaAbout(const Assembly &cells, std::int32_t cell, Vec3 axis)
 {
    const Vec3 own = transposed(matrix(cells.orientation[cell]), axis);
@@ -253,6 +279,7 @@ BondConstants Compiler::constantsOf(std::int64_t bond, bool &damped) const
 void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
 {
    std::vector<Direction> direction;
+   Alike alike;
    for (std::int64_t i = 0; i < links; ++i) {
       const std::int32_t ca = scene.linkA(i), cb = scene.linkB(i);
       if (ca < 0 || cb < 0 || ca >= cells || cb >= cells || ca == cb)
@@ -262,6 +289,7 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
       if (!(direction.back().length > 0))
          throw Failure(DIATOM_BAD_INPUT, "the cells " + scene.name(ca) + " and " + scene.name(cb) +
                                              " are joined but lie at the same place");
+      alike.make(direction.back());
    }
    for (int axis = 0; axis < 4; ++axis) {
       for (std::int64_t i = 0; i < links; ++i)
