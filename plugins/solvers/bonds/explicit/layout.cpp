@@ -12,7 +12,7 @@ namespace bonds {
 namespace {
 
 /// Cells in a cross-section of a tile: what of them waits for the next plane stays in the cache.
-constexpr std::size_t kSection = 1024;
+constexpr std::size_t kSection = 1536;
 constexpr std::size_t kTileCells = 10000, kMostTiles = 16;
 /// Bonds of a block that make it worth while to compute all sixteen places.
 constexpr int kFull = 6;

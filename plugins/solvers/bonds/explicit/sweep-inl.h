@@ -30,14 +30,20 @@ void drift(const SweepWork<T> &work, const Tile &tile, double dt)
    }
 }
 
-template<typename T>
-void addCrossings(const SweepWork<T> &work, const Chunk *chunk, T *atLo)
+template<class D, typename T = hn::TFromD<D>>
+void addCrossings(D d, const SweepWork<T> &work, const Chunk *chunk, T *atLo)
 {
+   constexpr std::uint16_t kAll = 0xffff;
    for (std::uint32_t c = chunk[0].crossings; c < chunk[1].crossings; ++c) {
       const Crossing &one = work.crossings[c];
       const T *slot = work.slots + one.slot + (one.atHi ? 6 * work.slotStride : 0);
       const std::ptrdiff_t to = one.cell - static_cast<std::ptrdiff_t>(chunk->cells);
-      for (int k = 0; k < 6; ++k)
+      for (std::size_t k = 0; one.lanes == kAll && k < 6; ++k)
+         for (std::size_t i = 0; i < kBlock; i += hn::Lanes(d)) {
+            T *const at = atLo + k * kChunk + to + i;
+            hn::StoreU(hn::Add(hn::LoadU(d, at), hn::LoadU(d, slot + k * work.slotStride + i)), d, at);
+         }
+      for (int k = 0; one.lanes != kAll && k < 6; ++k)
          for (std::size_t i = 0; i < kBlock; ++i)
             if (one.lanes >> i & 1)
                atLo[k * kChunk + to + static_cast<std::ptrdiff_t>(i)] += slot[k * work.slotStride + i];
@@ -103,7 +109,7 @@ void tile(const SweepWork<T> &work, const Tile &one, const Move &move, T *room, 
       }
       ahead.fetchSome();
       if (chunk[0].crossings != chunk[1].crossings)
-         addCrossings(work, chunk, atLo);
+         addCrossings(d, work, chunk, atLo);
       const T *atHi = room + (begin - first);
       if (work.beforeKick)
          work.beforeKick(work.context, begin, end, atLo, atHi, hiStride);
