@@ -32,7 +32,7 @@ public:
       const bonds::Ends all = endsOf(assembly, s, bond);
       const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
       return {assembly.frameOf(bond) * (s.displacementOf(b) - s.displacementOf(a)),
-              assembly.length[bond],
+              assembly.lengthOf(bond),
               all.qa,
               all.qb,
               all.dv,

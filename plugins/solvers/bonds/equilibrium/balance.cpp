@@ -17,7 +17,7 @@ Vec3 stretchOf(const Assembly &assembly, const RestShape &rest, std::int64_t bon
 {
    if (rest.d[0].empty())
       return {};
-   return rest.separation(bond) - Vec3{assembly.length[bond], 0, 0};
+   return rest.separation(bond) - Vec3{assembly.lengthOf(bond), 0, 0};
 }
 Vec3 turnOf(const RestShape &rest, std::int64_t bond)
 {
@@ -59,7 +59,7 @@ double roundingOf(const Assembly &assembly, const State &state, std::int64_t bon
    const BondConstants &k = assembly.constants[bond];
    const double moved = norm(state.displacementOf(a)) + norm(state.displacementOf(b)),
                 turned = norm(vec(state.turnOf(a))) + norm(vec(state.turnOf(b)));
-   return kDigits * std::max({k.k[0], k.k[1], k.k[2]}) * (moved + turned * assembly.length[bond]);
+   return kDigits * std::max({k.k[0], k.k[1], k.k[2]}) * (moved + turned * assembly.lengthOf(bond));
 }
 
 /// Largest force that the actuated rest shape would call up if nothing could move.
@@ -80,7 +80,7 @@ Balance::Balance(const sdk::SceneView &scene, const Options &options)
       std::copy_n(scene.index(i), 3, m_index[i].begin());
    if (m_assembly.links > 0) {
       m_pitch = 0;
-      for (const double length : m_assembly.length)
+      for (const double length : m_assembly.constants.lengths())
          m_pitch = std::max(m_pitch, length);
    }
    if (m_assembly.hasLoads)
@@ -106,7 +106,7 @@ double Balance::bondLoad(std::int64_t bond, const State &state, const RestShape 
    measure.rounding = std::max(measure.rounding, roundingOf(m_assembly, state, bond));
    if (!rest.d[0].empty())
       measure.atWork = std::max(measure.atWork, blockedForce(k, stretchOf(m_assembly, rest, bond),
-                                                             turnOf(rest, bond), m_assembly.length[bond]));
+                                                             turnOf(rest, bond), m_assembly.lengthOf(bond)));
    return rates ? dampedPower(r, k, bondEnds<true>(m_assembly, state, bond, frame)) : 0;
 }
 

@@ -35,7 +35,7 @@ void add(Column &to, std::int64_t cell, Vec3 force, Vec3 torque)
 BondForces bondForces(const Assembly &assembly, const State &state, const RestShape *rest, std::int64_t bond)
 {
    const Ends ends = endsOf(assembly, state, bond);
-   const Vec3 restD = rest ? rest->separation(bond) : Vec3{assembly.length[bond], 0, 0},
+   const Vec3 restD = rest ? rest->separation(bond) : Vec3{assembly.lengthOf(bond), 0, 0},
               restPhi = rest ? rest->turn(bond) : Vec3{};
    BondForces f;
    const BondConstants &k = assembly.constants[bond];

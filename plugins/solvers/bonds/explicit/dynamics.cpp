@@ -138,8 +138,8 @@ void Dynamics::stageCell(std::int64_t i, double dt, const StageOfStep &stage, Ve
    const Vec3 v = m_state.velocityOf(i), w = m_state.spinOf(i);
    const bool small = m_state.smallTurns;
    const Quat q = m_state.turnOf(i), turn = Quat{0, w.x, w.y, w.z} * (small ? Quat() : q);
-   Vec3 spinRate{assembly.inverseInertia[0][i] * torque.x, assembly.inverseInertia[1][i] * torque.y,
-                 assembly.inverseInertia[2][i] * torque.z};
+   Vec3 spinRate{assembly.inverseInertia(i, 0) * torque.x, assembly.inverseInertia(i, 1) * torque.y,
+                 assembly.inverseInertia(i, 2) * torque.z};
    if (assembly.boxes) {
       const Vec3 turning = small ? Vec3{} : cross(w, spinMomentum(assembly, i, q, w));
       spinRate = spinFrom(assembly, i, q, torque - turning, {});
@@ -151,9 +151,9 @@ void Dynamics::stageCell(std::int64_t i, double dt, const StageOfStep &stage, Ve
                             0.5 * turn.x,
                             0.5 * turn.y,
                             0.5 * turn.z,
-                            assembly.inverseMass[0][i] * force.x,
-                            assembly.inverseMass[1][i] * force.y,
-                            assembly.inverseMass[2][i] * force.z,
+                            assembly.inverseMass(i, 0) * force.x,
+                            assembly.inverseMass(i, 1) * force.y,
+                            assembly.inverseMass(i, 2) * force.z,
                             spinRate.x,
                             spinRate.y,
                             spinRate.z};

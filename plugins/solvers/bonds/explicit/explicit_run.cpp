@@ -86,8 +86,9 @@ void ExplicitRun::estimate(const sdk::Call &call, const Options &options, const 
       estimate.step_seconds = evaluations * (cells * 40e-9 + links * 55e-9);
    } else {
       const bool single = options.precision == Options::Precision::f32;
-      estimate.bytes = cells * (single ? 700 : 820);
-      estimate.step_seconds = (single ? 0.6 : 1) * evaluations * (cells * 2e-9 + links * 6e-9);
+      estimate.bytes = cells * (single ? 400 : 520) + links * 25;
+      const double all = (single ? 0.6 : 1) * evaluations * (cells * 2e-9 + links * 6e-9);
+      estimate.step_seconds = assembly.law == Law::small ? 0.6 * all : all;
    }
    if (options.trueLimit)
       estimate.bytes += cells * 3e3; // while the eigenvalue is sought
@@ -114,7 +115,7 @@ ExplicitRun::ExplicitRun(const sdk::Call &call, const Options &options, const sd
    double stiffest = 0;
    for (std::int64_t i = 0; i < m_assembly.links; ++i)
       stiffest =
-          std::max(stiffest, m_assembly.constants[i].k[0] * m_assembly.length[i] * m_assembly.length[i]);
+          std::max(stiffest, m_assembly.constants[i].k[0] * m_assembly.lengthOf(i) * m_assembly.lengthOf(i));
    m_scale = start.kinetic + start.elastic + start.contact +
              1e-9 * stiffest; // 5e-5 strain in one bond is no growth
    m_outputs = {sizeof(diatom_outputs), static_cast<std::int64_t>(m_output.size()), m_output.data()};

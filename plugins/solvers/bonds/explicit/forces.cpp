@@ -98,9 +98,9 @@ void BondForcesPass::range(const State &state, const RestShape &rest, std::int64
          out[k] = m_out[k / 3 * 3 + (axis + k % 3) % 3].data();
       for (std::int64_t i = from; i < to; ++i) {
          const Ends ends = axis < 3
-                               ? aligned<Damped>(turned, assembly.a[i], assembly.b[i], assembly.length[i])
+                               ? aligned<Damped>(turned, assembly.a[i], assembly.b[i], assembly.lengthOf(i))
                                : endsOf(assembly, state, i);
-         Vec3 restD{assembly.length[i], 0, 0}, restPhi{};
+         Vec3 restD{assembly.lengthOf(i), 0, 0}, restPhi{};
          if constexpr (Actuated) {
             restD = rest.separation(i);
             restPhi = rest.turn(i);

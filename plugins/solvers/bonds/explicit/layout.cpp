@@ -23,7 +23,7 @@ using Place = std::array<std::int64_t, 3>;
 std::vector<Place> gridPlaces(const Assembly &assembly)
 {
    double unit = 1e300;
-   for (const double length : assembly.length)
+   for (const double length : assembly.constants.lengths())
       unit = std::min(unit, length);
    std::array<double, 3> low, high;
    for (int k = 0; k < 3; ++k) {
@@ -133,7 +133,7 @@ void Builder::placeCells()
          m_out.tiles.back().cells = static_cast<std::uint32_t>(m_out.cell.size());
       }
       m_out.place[i] = static_cast<std::uint32_t>(m_out.cell.size());
-      m_out.cell.push_back(i);
+      m_out.cell.push_back(static_cast<std::int32_t>(i));
    }
    while (m_out.cell.size() % kBlock != 0)
       m_out.cell.push_back(-1);
@@ -173,7 +173,7 @@ std::array<double, kConstants> Builder::constantsOf(const Bond &bond) const
 {
    const BondConstants &k = m_assembly.constants[bond.bond];
    std::array<double, kConstants> out{};
-   out[kLength] = m_assembly.length[bond.bond];
+   out[kLength] = m_assembly.lengthOf(bond.bond);
    for (std::size_t j = 0; j < 3; ++j) {
       out[kAxial + j] = k.k[j];
       out[kTorsion + j] = k.c[j];

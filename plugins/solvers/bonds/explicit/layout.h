@@ -14,7 +14,7 @@ struct Layout
 
    std::size_t places = 0;           // of cells, with padding
    std::vector<std::uint32_t> place; // of each cell
-   std::vector<std::int64_t> cell;   // at each place, -1 where there is none
+   std::vector<std::int32_t> cell;   // at each place, -1 where there is none
 
    std::vector<Tile> tiles;
    std::vector<Chunk> chunks; // and one past the last

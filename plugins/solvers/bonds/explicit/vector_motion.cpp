@@ -220,7 +220,7 @@ void VectorMotion<T>::restChanged()
 {
    for (const Layout::RestPlace &place : m_layout.rests) {
       const Vec3 d = m_rest.separation(place.bond), phi = m_rest.turn(place.bond);
-      const double stretch = d.x - m_assembly->length[place.bond], sign = place.reversed ? -1 : 1;
+      const double stretch = d.x - m_assembly->lengthOf(place.bond), sign = place.reversed ? -1 : 1;
       const double all[6] = {stretch, d.y, sign * d.z, phi.x, phi.y, sign * phi.z};
       for (std::size_t k = 0; k < 6; ++k)
          m_restShape[place.at + k * kBlock] = static_cast<T>(all[k]);

@@ -82,7 +82,7 @@ ImplicitRun::ImplicitRun(const Options &options, const sdk::Values &values, cons
    const Assembly &assembly = m_balance.assembly();
    double stiffest = 0;
    for (std::int64_t i = 0; i < assembly.links; ++i)
-      stiffest = std::max(stiffest, assembly.constants[i].k[0] * assembly.length[i] * assembly.length[i]);
+      stiffest = std::max(stiffest, assembly.constants[i].k[0] * assembly.lengthOf(i) * assembly.lengthOf(i));
    m_scale = e[0] + e[1] + e[3] + 1e-9 * stiffest; // 5e-5 strain in one bond is no growth
 }
 

@@ -44,10 +44,11 @@ Actuation::Actuation(const sdk::SceneView &scene, const Assembly &assembly)
       m_initial.d[k].assign(static_cast<std::size_t>(assembly.links), 0);
       m_initial.phi[k].assign(static_cast<std::size_t>(assembly.links), 0);
    }
-   m_initial.d[0] = assembly.length;
+   for (std::int64_t i = 0; i < assembly.links; ++i)
+      m_initial.d[0][i] = assembly.lengthOf(i);
    for (const std::int64_t bond : m_bonds) {
-      m_length.push_back(assembly.length[bond]);
-      m_accepted.push_back({Vec3{assembly.length[bond], 0, 0}, Vec3{}});
+      m_length.push_back(assembly.lengthOf(bond));
+      m_accepted.push_back({Vec3{assembly.lengthOf(bond), 0, 0}, Vec3{}});
    }
 }
 
@@ -79,7 +80,8 @@ void Actuation::addDriver(const sdk::SceneView &scene, const Assembly &assembly,
    const Vec3 along = unit[axis];
    // The sheet's cells (amoeba.md 1.2): terminals along own x bend about own z, terminals along own z shear
    // along own x.
-   const Mat3 own = matrix(assembly.orientation[cell]);
+   const double *q = scene.orientation(cell);
+   const Mat3 own = matrix({q[0], q[1], q[2], q[3]});
    const Vec3 terminal = transposed(own, along);
    const double part[3] = {std::abs(terminal.x), std::abs(terminal.y), std::abs(terminal.z)};
    const auto n = std::max_element(part, part + 3) - part;
@@ -89,7 +91,7 @@ void Actuation::addDriver(const sdk::SceneView &scene, const Assembly &assembly,
    for (std::int64_t e = assembly.first[cell]; e < assembly.first[cell + 1]; ++e) {
       const std::int64_t bond = assembly.bondsOf[e] / 2;
       const Mat3 frame = assembly.frameOf(bond);
-      const double sign = dot(frame.r0, along), length = assembly.length[bond];
+      const double sign = dot(frame.r0, along), length = assembly.lengthOf(bond);
       if (std::abs(sign) < 1 - 1e-6)
          continue;
       Share share{bond, number, {}, {}};

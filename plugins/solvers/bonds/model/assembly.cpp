@@ -2,6 +2,7 @@
 #include "model/assembly.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 namespace bonds {
@@ -55,12 +56,18 @@ Assembly::Assembly(const sdk::SceneView &scene, const Options &options)
 {
    if (cells <= 0)
       throw Failure(DIATOM_BAD_INPUT, "the scene has no cells");
+   if (links > std::numeric_limits<std::int32_t>::max())
+      throw Failure(DIATOM_LIMIT, "the scene has more than 2^31 links");
    readEffects(scene);
    law = links > 0 && !scene.hasEffect("rotation") ? Law::small : options.exact ? Law::exact : Law::simple;
    readCells(scene);
    readSupports(scene);
    readBonds(scene, options);
    indexBonds();
+   if (!boxes) {
+      boxInertia = {};
+      orientation = {};
+   }
 }
 
 Mat3 Assembly::frameOf(std::int64_t bond) const
@@ -106,13 +113,11 @@ void Assembly::readCells(const sdk::SceneView &scene)
    const auto n = static_cast<std::size_t>(cells);
    for (int k = 0; k < 3; ++k) {
       rest[k].resize(n);
-      inverseMass[k].resize(n);
-      inverseInertia[k].resize(n);
       boxInertia[k].resize(n);
    }
    mass.resize(n);
    inertia.resize(n);
-   halfHeight.resize(n);
+   halfHeight.resize(hasGround ? n : 0);
    orientation.resize(n);
    for (std::int64_t i = 0; i < cells; ++i) {
       const double *p = scene.position(i), *q = scene.orientation(i), *e = scene.extent(i);
@@ -141,6 +146,8 @@ void Assembly::readCells(const sdk::SceneView &scene)
       const double one = boxInertia[0][i];
       boxes = boxes || std::abs(one - boxInertia[1][i]) > 1e-9 * one ||
               std::abs(one - boxInertia[2][i]) > 1e-9 * one;
+      if (!hasGround)
+         continue;
       const Vec3 down = matrix(orientation[i]).r2;
       halfHeight[i] = 0.5 * (std::abs(down.x) * e[0] + std::abs(down.y) * e[1] + std::abs(down.z) * e[2]);
    }
@@ -158,11 +165,6 @@ void Assembly::readSupports(const sdk::SceneView &scene)
    for (std::int64_t i = 0; i < driven.count(); ++i)
       if (const double freedom = driven.row(i)[0]; freedom >= 0 && freedom <= 5)
          fixed[driven.where(i)] |= static_cast<std::uint8_t>(1 << static_cast<int>(freedom));
-   for (std::int64_t i = 0; i < cells; ++i)
-      for (int k = 0; k < 3; ++k) {
-         inverseMass[k][i] = (fixed[i] >> k & 1) ? 0 : 1 / mass[i];
-         inverseInertia[k][i] = (fixed[i] >> (3 + k) & 1) ? 0 : 1 / inertia[i];
-      }
 }
 
 void Assembly::indexBonds()
@@ -175,10 +177,10 @@ void Assembly::indexBonds()
    for (std::int64_t i = 0; i < cells; ++i)
       first[i + 1] += first[i];
    bondsOf.resize(static_cast<std::size_t>(2 * links));
-   std::vector<std::int64_t> next(first.begin(), first.end() - 1);
+   std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
    for (std::int64_t i = 0; i < links; ++i) {
-      bondsOf[next[a[i]]++] = 2 * i;
-      bondsOf[next[b[i]]++] = 2 * i + 1;
+      bondsOf[next[a[i]]++] = static_cast<std::uint32_t>(2 * i);
+      bondsOf[next[b[i]]++] = static_cast<std::uint32_t>(2 * i + 1);
    }
 }
 

@@ -49,28 +49,25 @@ struct Assembly
    std::int64_t cells = 0, links = 0;
 
    // Cells.
-   std::array<Column, 3> rest;           // m
-   Column mass;                          // kg
-   std::array<Column, 3> inverseMass;    // 0 where held or driven
-   std::array<Column, 3> inverseInertia; // world axes for cubes, 0 where held; smallest of the box otherwise
-   std::vector<std::uint8_t> fixed;      // degrees of freedom, bit by bit, that forces do not move
-   Column halfHeight;                    // m, centre to lower face at rest
-   bool boxes = false;                   // some cell is no cube: its inertia turns with it
-   std::array<Column, 3> boxInertia;     // principal, in the cell's own axes; for all cells when `boxes`
-   std::vector<Quat> orientation;        // own axes to world at rest; likewise
-   Column inertia;                       // of cubes
+   std::array<Column, 3> rest;       // m
+   Column mass;                      // kg
+   std::vector<std::uint8_t> fixed;  // degrees of freedom, bit by bit, that forces do not move
+   Column halfHeight;                // m, centre to lower face at rest; empty without ground
+   bool boxes = false;               // some cell is no cube: its inertia turns with it
+   std::array<Column, 3> boxInertia; // principal, in the cell's own axes; empty without `boxes`
+   std::vector<Quat> orientation;    // own axes to world at rest; likewise
+   Column inertia;                   // of cubes; the smallest of boxes
 
    // Bonds: first those along x, then y, z, then any other direction. a to b points along the positive axis.
    std::array<std::int64_t, 5> group{};
    std::vector<std::int32_t> a, b;
-   std::vector<std::int64_t> link; // the scene's number
-   Column length;
+   std::vector<std::int32_t> link; // the scene's number
    BondTable constants;
    std::vector<Mat3> frame; // rows are the bond's axes; only of the last group
 
    // Bonds of each cell: 2 * bond + (1 where the cell is b), in bond order.
-   std::vector<std::int64_t> first;
-   std::vector<std::int64_t> bondsOf;
+   std::vector<std::uint32_t> first;
+   std::vector<std::uint32_t> bondsOf;
 
    Law law = Law::exact;
 
@@ -83,6 +80,17 @@ struct Assembly
    Ground ground;
    std::vector<std::array<double, 6>> velocity; // initial, empty when none
 
+   /// 0 where held or driven; inertias of boxes as those of a cube with their smallest one.
+   double inverseMass(std::int64_t cell, int axis) const
+   {
+      return (fixed[cell] >> axis & 1) ? 0 : 1 / mass[cell];
+   }
+   double inverseInertia(std::int64_t cell, int axis) const
+   {
+      return (fixed[cell] >> (3 + axis) & 1) ? 0 : 1 / inertia[cell];
+   }
+   /// m, at rest.
+   double lengthOf(std::int64_t bond) const { return constants.length(bond); }
    int axisOf(std::int64_t bond) const
    {
       return bond < group[1] ? 0 : bond < group[2] ? 1 : bond < group[3] ? 2 : 3;

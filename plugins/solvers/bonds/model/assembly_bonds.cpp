@@ -219,7 +219,7 @@ public:
       for (std::int64_t i = 0; i < assembly.group[3]; ++i)
          m_neighbours.join(assembly.a[i], assembly.b[i], assembly.axisOf(i));
    }
-   BondConstants constantsOf(std::int64_t bond, bool &damped) const;
+   BondConstants constantsOf(std::int64_t bond, double length, bool &damped) const;
 
 private:
    const Stiffness &of(std::int64_t cell) const { return m_materials[m_scene.material(cell)]; }
@@ -248,16 +248,15 @@ bool Compiler::dense(std::int64_t bond, int plane) const
    return axis < 3 && m_neighbours.squared(a, b, axis, (axis + 1 + plane) % 3, counts);
 }
 
-BondConstants Compiler::constantsOf(std::int64_t bond, bool &damped) const
+BondConstants Compiler::constantsOf(std::int64_t bond, double length, bool &damped) const
 {
    const Assembly &assembly = m_assembly;
    const std::int32_t a = assembly.a[bond], b = assembly.b[bond];
    const Mat3 axes = assembly.frameOf(bond);
-   const double l = assembly.length[bond];
    const auto turning = [&](Vec3 axis) {
       return reduced(inertiaAbout(assembly, a, axis), inertiaAbout(assembly, b, axis));
    };
-   HalfBond ha = halfOf(m_scene, of(a), a, axes, l), hb = halfOf(m_scene, of(b), b, axes, l);
+   HalfBond ha = halfOf(m_scene, of(a), a, axes, length), hb = halfOf(m_scene, of(b), b, axes, length);
    const bool both[2] = {dense(bond, 0), dense(bond, 1)};
    for (int plane = 0; plane < 2; ++plane) {
       if (!both[plane])
@@ -270,7 +269,8 @@ BondConstants Compiler::constantsOf(std::int64_t bond, bool &damped) const
       }
    }
    damped = ha.damped() && hb.damped();
-   return compose(ha, hb, l, m_options.beam, m_options.stepped, reduced(assembly.mass[a], assembly.mass[b]),
+   return compose(ha, hb, length, m_options.beam, m_options.stepped,
+                  reduced(assembly.mass[a], assembly.mass[b]),
                   {turning(axes.r0), turning(axes.r1), turning(axes.r2)});
 }
 
@@ -294,17 +294,15 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
    for (int axis = 0; axis < 4; ++axis) {
       for (std::int64_t i = 0; i < links; ++i)
          if (direction[i].axis == axis)
-            link.push_back(i);
+            link.push_back(static_cast<std::int32_t>(i));
       group[axis + 1] = static_cast<std::int64_t>(link.size());
    }
    a.resize(link.size());
    b.resize(link.size());
-   length.resize(link.size());
    for (std::int64_t i = 0; i < links; ++i) {
       const Direction &d = direction[link[i]];
       a[i] = d.reversed ? scene.linkB(link[i]) : scene.linkA(link[i]);
       b[i] = d.reversed ? scene.linkA(link[i]) : scene.linkB(link[i]);
-      length[i] = d.length;
       if (d.axis == 3)
          frame.push_back(frameAlong(d.unit));
    }
@@ -312,7 +310,8 @@ void Assembly::readBonds(const sdk::SceneView &scene, const Options &options)
    bool anyDamping = false;
    for (std::int64_t i = 0; i < links; ++i) {
       bool own = false;
-      constants.push_back(compiler.constantsOf(i, own));
+      const double length = direction[link[i]].length;
+      constants.push_back(compiler.constantsOf(i, length, own), length);
       coupled = coupled || constants[i].s[0] != 0 || constants[i].s[1] != 0;
       anyDamping = anyDamping || own;
    }

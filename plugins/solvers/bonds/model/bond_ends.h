@@ -12,7 +12,7 @@ BondEnds bondEnds(const Assembly &assembly, const State &state, std::int64_t bon
    const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
    BondEnds ends;
    ends.displacement = frame * (state.displacementOf(b) - state.displacementOf(a));
-   ends.length = assembly.length[bond];
+   ends.length = assembly.lengthOf(bond);
    ends.small = state.smallTurns;
    ends.qa = inAxes(frame, state.turnOf(a));
    ends.qb = inAxes(frame, state.turnOf(b));

@@ -14,7 +14,7 @@ double energyOf(const Assembly &assembly, const State &state, const RestShape *r
    const Relation r = relationOf(assembly, state, bond);
    if (rest)
       return bondEnergy(r, assembly.constants[bond], rest->separation(bond), rest->turn(bond));
-   return bondEnergy(r, assembly.constants[bond], {assembly.length[bond], 0, 0}, {});
+   return bondEnergy(r, assembly.constants[bond], {assembly.lengthOf(bond), 0, 0}, {});
 }
 
 } // namespace
@@ -71,9 +71,9 @@ Column strains(const Assembly &assembly, const State &state, const RestShape *re
 {
    Column out(static_cast<std::size_t>(assembly.cells), 0);
    for (std::int64_t i = 0; i < assembly.links; ++i) {
-      const double length = rest ? rest->d[0][i] : assembly.length[i];
+      const double length = rest ? rest->d[0][i] : assembly.lengthOf(i);
       const Relation r = relationOf(assembly, state, i);
-      const double strain = std::abs(r.u.x - length) / assembly.length[i];
+      const double strain = std::abs(r.u.x - length) / assembly.lengthOf(i);
       for (const std::int64_t cell : {assembly.a[i], assembly.b[i]})
          out[cell] = std::max(out[cell], strain);
    }

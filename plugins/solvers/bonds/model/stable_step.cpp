@@ -28,13 +28,13 @@ struct Shares
    double move(std::int64_t cell, int axis) const
    {
       if (axis < 3)
-         return load.move[axis][cell] * assembly.inverseMass[axis][cell];
+         return load.move[axis][cell] * assembly.inverseMass(cell, axis);
       return std::max({move(cell, 0), move(cell, 1), move(cell, 2)});
    }
    double turn(std::int64_t cell, int axis) const
    {
       if (axis < 3)
-         return load.turn[axis][cell] * assembly.inverseInertia[axis][cell];
+         return load.turn[axis][cell] * assembly.inverseInertia(cell, axis);
       return std::max({turn(cell, 0), turn(cell, 1), turn(cell, 2)});
    }
 };
@@ -89,7 +89,7 @@ Load loadOf(const Assembly &assembly, const Couplings &couplings, double dt)
    }
    for (std::int64_t i = 0; i < assembly.links; ++i) {
       const int axis = assembly.axisOf(i);
-      const Diagonal d = diagonalOf(assembly.constants[i], assembly.length[i], dt);
+      const Diagonal d = diagonalOf(assembly.constants[i], assembly.lengthOf(i), dt);
       for (int j = 0; j < 3; ++j) {
          const bool askew = axis == 3;
          const int world = (axis + j) % 3;
@@ -195,7 +195,7 @@ void bondEigenvalues(const Assembly &assembly, const Shares &shares, std::int64_
 {
    const int axis = assembly.axisOf(i);
    const BondConstants &k = assembly.constants[i];
-   const Diagonal d = diagonalOf(k, assembly.length[i], dt);
+   const Diagonal d = diagonalOf(k, assembly.lengthOf(i), dt);
    const std::int64_t a = assembly.a[i], b = assembly.b[i];
    const bool askew = axis == 3;
    const auto share = [](double total, double own) { return own > 0 ? total / own : 0; };
@@ -214,7 +214,7 @@ void bondEigenvalues(const Assembly &assembly, const Shares &shares, std::int64_
    g = std::max(k.d[0] * (moveA[0] + moveB[0]), k.e[0] * (turnA[0] + turnB[0]));
    for (int plane = 0; plane < 2; ++plane) {
       const int across = 1 + plane, about = 2 - plane;
-      const double armA = assembly.length[i] / 2 + k.s[plane], armB = assembly.length[i] / 2 - k.s[plane];
+      const double armA = assembly.lengthOf(i) / 2 + k.s[plane], armB = assembly.lengthOf(i) / 2 - k.s[plane];
       const double shear =
           moveA[across] + moveB[across] + armA * armA * turnA[about] + armB * armB * turnB[about];
       const double bend = turnA[about] + turnB[about], both = armA * turnA[about] - armB * turnB[about];

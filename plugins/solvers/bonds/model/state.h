@@ -64,9 +64,9 @@ inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bo
    const Mat3 frame = assembly.frameOf(bond);
    const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
    Ends ends;
-   ends.length = assembly.length[bond];
+   ends.length = assembly.lengthOf(bond);
    ends.separation = frame * (state.displacementOf(b) - state.displacementOf(a));
-   ends.separation.x += assembly.length[bond];
+   ends.separation.x += assembly.lengthOf(bond);
    ends.qa = inAxes(frame, state.turnOf(a));
    ends.qb = inAxes(frame, state.turnOf(b));
    ends.dv = frame * (state.velocityOf(b) - state.velocityOf(a));
@@ -119,18 +119,18 @@ inline Vec3 spinFrom(const Assembly &assembly, std::int64_t i, Quat turn, Vec3 m
 inline void kickCell(const Assembly &assembly, std::int64_t i, double dt, Vec3 force, Vec3 torque,
                      State &state)
 {
-   state.velocity(0)[i] += dt * assembly.inverseMass[0][i] * force.x;
-   state.velocity(1)[i] += dt * assembly.inverseMass[1][i] * force.y;
-   state.velocity(2)[i] += dt * assembly.inverseMass[2][i] * force.z;
+   state.velocity(0)[i] += dt * assembly.inverseMass(i, 0) * force.x;
+   state.velocity(1)[i] += dt * assembly.inverseMass(i, 1) * force.y;
+   state.velocity(2)[i] += dt * assembly.inverseMass(i, 2) * force.z;
    if (assembly.boxes) {
       const Quat q = state.turnOf(i);
       const Vec3 w = state.spinOf(i);
       state.setSpin(i, spinFrom(assembly, i, q, spinMomentum(assembly, i, q, w) + dt * torque, w));
       return;
    }
-   state.spin(0)[i] += dt * assembly.inverseInertia[0][i] * torque.x;
-   state.spin(1)[i] += dt * assembly.inverseInertia[1][i] * torque.y;
-   state.spin(2)[i] += dt * assembly.inverseInertia[2][i] * torque.z;
+   state.spin(0)[i] += dt * assembly.inverseInertia(i, 0) * torque.x;
+   state.spin(1)[i] += dt * assembly.inverseInertia(i, 1) * torque.y;
+   state.spin(2)[i] += dt * assembly.inverseInertia(i, 2) * torque.z;
 }
 
 } // namespace bonds

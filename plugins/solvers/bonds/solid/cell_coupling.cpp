@@ -109,7 +109,7 @@ void CellCoupling::addCell(const CoupledCell &cell)
    for (std::int64_t s = m_first[cell.cell]; s < m_first[cell.cell + 1]; ++s) {
       const std::int64_t number = m_slot[s] / 2, bond = m_bond[number];
       const int axis = axisOf(number);
-      const double length = m_assembly->length[bond], own = cell.youngsModulus * cell.area[axis] / length;
+      const double length = m_assembly->lengthOf(bond), own = cell.youngsModulus * cell.area[axis] / length;
       const double a = m_assembly->mass[m_assembly->a[bond]], b = m_assembly->mass[m_assembly->b[bond]];
       const double loss = 2 * cell.dampingRatio * std::sqrt(own * a * b / (a + b));
       const double each = 1 / (bonds[axis] * length);

@@ -78,7 +78,7 @@ private:
    /// Actuated stretch at rest, m.
    double restOf(std::int64_t number, const RestShape *rest) const
    {
-      return rest ? rest->d[0][m_bond[number]] - m_assembly->length[m_bond[number]] : 0;
+      return rest ? rest->d[0][m_bond[number]] - m_assembly->lengthOf(m_bond[number]) : 0;
    }
    BondEnds endsAt(const State &state, std::int64_t number) const; // in the bond's axes
    /// Mean strains of a coupled cell from stretches of all bonds, world axes.

@@ -75,7 +75,7 @@ void CellCoupling::measure(const State &state, const RestShape *rest, std::int64
          const std::int64_t bond = m_bond[n], a = assembly.a[bond], b = assembly.b[bond];
          const Vec3 qa = q.at(a), qb = q.at(b);
          const Stretch s = stretchOf({u.at(b) - u.at(a),
-                                      assembly.length[bond],
+                                      assembly.lengthOf(bond),
                                       {scalar[a], qa.x, qa.y, qa.z},
                                       {scalar[b], qb.x, qb.y, qb.z},
                                       {},

@@ -32,7 +32,7 @@ void check(const sdk::SceneView &scene, const Assembly &assembly, std::int64_t c
    for (std::int64_t s = assembly.first[cell]; s < assembly.first[cell + 1]; ++s) {
       const std::int64_t bond = assembly.bondsOf[s] / 2;
       const int axis = assembly.axisOf(bond);
-      if (axis < 3 && std::abs(assembly.length[bond] - extent[axis]) <= 1e-6 * extent[axis])
+      if (axis < 3 && std::abs(assembly.lengthOf(bond) - extent[axis]) <= 1e-6 * extent[axis])
          continue;
       throw Failure(DIATOM_UNSUPPORTED,
                     "the cell " + scene.name(cell) +
