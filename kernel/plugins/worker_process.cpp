@@ -50,7 +50,7 @@ std::int32_t taken(const diatom_call *call, std::string_view message, WorkerProc
       if (!takeText(message, one))
          return refuseCall(call, kWorkerDamaged);
    if (!report.empty())
-      call->report(call, DIATOM_ERROR, report.c_str());
+      call->report(call, answer.reply.status == DIATOM_OK ? DIATOM_WARNING : DIATOM_ERROR, report.c_str());
    return answer.reply.status;
 }
 

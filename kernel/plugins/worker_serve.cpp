@@ -6,6 +6,7 @@
 #include "plugins/manifest.h"
 #include "plugins/module.h"
 #include "plugins/scene_pack.h"
+#include "plugins/warnings.h"
 #include "plugins/worker_protocol.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <mutex>
@@ -91,9 +93,18 @@ void limitMemory(double estimated)
 class Server
 {
 public:
-   explicit Server(Line line) : m_line(std::move(line)) {}
+   explicit Server(Line line) : m_line(std::move(line))
+   {
+      setPluginWarnings([this](const std::string &sentence, PluginWarning kind) {
+         if (kind == PluginWarning::remark)
+            m_remarks += (m_remarks.empty() ? "" : "; ") + withoutName(sentence, ": ");
+         else
+            std::fprintf(stderr, "%s\n", sentence.c_str());
+      });
+   }
    ~Server()
    {
+      setPluginWarnings({});
       if (m_self)
          m_table->destroy(m_self); // it may have more to end than memory
    }
@@ -153,6 +164,12 @@ private:
       return m_line.send(message);
    }
 
+   /// The host names plugin and function itself.
+   static std::string withoutName(const std::string &sentence, const std::string &name)
+   {
+      return sentence.starts_with(name) ? sentence.substr(name.size()) : sentence;
+   }
+
    static void refuse(Answer &answer, std::string why)
    {
       answer.reply.status = DIATOM_INTERNAL;
@@ -193,13 +210,11 @@ private:
             status = body(record);
             return status;
          });
+         answer.report = std::exchange(m_remarks, {});
          if (done)
             return;
          answer.reply.status = status == DIATOM_OK ? DIATOM_EXCEPTION : status;
-         // The host names plugin and function itself.
-         const std::string prefix = fmt::format(" ({}): ", function);
-         const std::string &message = done.error().message;
-         answer.report = message.starts_with(prefix) ? message.substr(prefix.size()) : message;
+         answer.report = withoutName(done.error().message, fmt::format(" ({}): ", function));
       });
    }
 
@@ -341,6 +356,7 @@ private:
    void *m_self = nullptr;
    double m_estimated = 0; // bytes
    int m_threads = 0;
+   std::string m_remarks; // of the call under way
 };
 
 } // namespace

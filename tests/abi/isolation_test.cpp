@@ -97,12 +97,14 @@ private slots:
       QTest::newRow("actuated motion on two threads") << QStringList{
           "simulate", sample("gripper.diatom"), "--until", "0.01", "--threads", "2", "--record", "OUT"};
       QTest::newRow("balance") << QStringList{"solve", sample("bending-beam.diatom"), "--state", "OUT"};
+      QTest::newRow("balance with a warning")
+          << QStringList{"solve", sample("bending-beam.diatom"), "--effects=-rotation", "--state", "OUT"};
       QTest::newRow("modes") << QStringList{"modes", sample("bending-beam.diatom"), "--shapes", "OUT"};
    }
    void bothGiveTheSameBits()
    {
       QFETCH(QStringList, arguments);
-      QByteArray files[2];
+      QByteArray files[2], warnings[2];
       for (int isolated = 0; isolated < 2; ++isolated) {
          const QString out = m_dir.filePath(QString("out%1.csv").arg(isolated));
          QStringList all = arguments;
@@ -112,9 +114,13 @@ private slots:
          const auto ran = test::diatomRuns(all);
          QVERIFY2(ran.exit == 0, ran.err.constData());
          files[isolated] = textOf(out);
+         const auto at = ran.err.indexOf("org.diatom_cad.solver.bonds: ");
+         warnings[isolated] = at < 0 ? QByteArray() : ran.err.mid(at);
       }
       QVERIFY(files[0].size() > 100);
       QVERIFY(files[0] == files[1]);
+      QCOMPARE(warnings[0], warnings[1]);
+      QCOMPARE(warnings[0].contains("rotation is switched off"), arguments.contains("--effects=-rotation"));
    }
 
    void aSoundSolverRuns() { QCOMPARE(FalseRun().advance("", Job()), std::string()); }
