@@ -42,6 +42,7 @@ Result<double> lookStep(const Subject &subject, double stable, const Job &job)
 
 Result<double> motionTime(const Subject &subject, const Job &job)
 {
+   const RemarksMuted muted; // nobody sees this run
    auto started = startTrial(subject, {}, 0, job);
    if (!started)
       return started.error();

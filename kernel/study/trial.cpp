@@ -1,6 +1,7 @@
 #include "study/trial.h"
 
 #include "core/clock.h"
+#include "plugins/warnings.h"
 #include "study/refine.h"
 
 #include <fmt/format.h>
@@ -65,6 +66,7 @@ Result<double> meanOf(const Simulation &simulation, const std::vector<std::int64
 Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Quantity &quantity,
                           double until, std::int64_t samples, std::int64_t perSample, const Job &job)
 {
+   const RemarksMuted muted; // the run that is chosen tells
    const double stretch = until / static_cast<double>(samples);
    const double step = stretch / static_cast<double>(perSample);
    const auto start = Clock::now();
@@ -106,6 +108,7 @@ Result<TrialRun> runTrial(const Subject &subject, const Values &values, const Qu
 Result<double> timeStep(const Subject &subject, const Values &values, double step, double until,
                         double seconds, const Job &job)
 {
+   const RemarksMuted muted;         // the run that is chosen tells
    constexpr double kStretch = 2e-3; // s: the clock, the call and a look at the energies are nothing to it
    constexpr std::size_t kFewest = 3, kMost = 200;
    auto started = startTrial(subject, values, step, job);
@@ -140,6 +143,7 @@ Result<double> timeStep(const Subject &subject, const Values &values, double ste
 Result<double> ownStep(const Subject &subject, const Values &values, double until, double seconds,
                        const Job &job)
 {
+   const RemarksMuted muted;      // the run that is chosen tells
    constexpr int kStretches = 64; // after each of which the clock is looked at
    auto started = startTrial(subject, values, 0, job);
    if (!started)
