@@ -1,5 +1,6 @@
 #include "study/motion_time.h"
 
+#include "plugins/warnings.h"
 #include "study/settings.h"
 #include "study/step_limit.h"
 
