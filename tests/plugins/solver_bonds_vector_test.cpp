@@ -88,6 +88,17 @@ HandScene sceneOf(const QString &kind)
       return blockOf(9, 7, 11, 0.1, 5);
    if (kind == "sparse")
       return blockOf(12, 12, 12, 0.1, 3, 0.5);
+   if (kind == "held floor") { // whose bonds are left out but for the one to a cell that follows a curve
+      HandScene scene = blockOf(9, 7, 6, 0.1);
+      for (const auto &[at, cell] : scene.at)
+         if (at[2] < 2)
+            scene.fix(cell);
+      scene.effects.push_back("driven");
+      scene.addRow("driven", {0, 0}, scene.at[{4, 3, 1}]);
+      scene.addRow("curve", {0, 0}, 0);
+      scene.addRow("curve", {1e-3, 1e-4}, 0);
+      return scene;
+   }
    if (kind == "beam")
       return blockOf(40, 1, 1, 0);
    if (kind == "actuated") { // and nothing else: no constants but those of its one material
@@ -154,8 +165,8 @@ void SolverBondsVectorTest::theMotionIsThatOfOneBondAtATime_data()
    QTest::addColumn<QString>("kind");
    QTest::addColumn<QString>("integrator");
    QTest::addColumn<bool>("small");
-   for (const char *kind : {"dense", "damped", "unlike materials", "sparse", "beam", "askew", "actuated",
-                            "everything", "all but damping", "flat boxes"})
+   for (const char *kind : {"dense", "damped", "unlike materials", "sparse", "held floor", "beam", "askew",
+                            "actuated", "everything", "all but damping", "flat boxes"})
       for (const char *integrator : {"semi_implicit", "verlet", "rk4", "midpoint", "forward_euler"})
          for (const bool small : {false, true})
             QTest::addRow("%s, %s%s", kind, integrator, small ? ", small turns" : "")

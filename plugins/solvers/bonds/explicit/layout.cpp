@@ -76,8 +76,9 @@ struct Bond
 class Builder
 {
 public:
-   Builder(const Assembly &assembly, const std::vector<bool> &actuated, Layout &out)
-       : m_assembly(assembly), m_actuated(actuated), m_out(out)
+   Builder(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still,
+           Layout &out)
+       : m_assembly(assembly), m_actuated(actuated), m_still(still), m_out(out)
    {}
    void placeCells();
    void placeBonds();
@@ -91,7 +92,7 @@ private:
    void addCrossings();
 
    const Assembly &m_assembly;
-   const std::vector<bool> &m_actuated;
+   const std::vector<bool> &m_actuated, &m_still;
    Layout &m_out;
    std::map<std::array<std::int64_t, 9>, std::uint32_t> m_frames;
    std::map<std::array<double, kConstants>, std::uint32_t> m_sets;
@@ -283,6 +284,8 @@ void Builder::placeBonds()
    m_out.constants = m_assembly.damped ? kConstants : m_assembly.coupled ? kDamping : kCoupling;
    std::vector<Bond> inner, outer;
    for (std::int64_t i = 0; i < m_assembly.links; ++i) {
+      if (m_still[m_assembly.a[i]] && m_still[m_assembly.b[i]])
+         continue;
       const std::uint32_t a = m_out.place[m_assembly.a[i]], b = m_out.place[m_assembly.b[i]];
       const Bond bond{std::min(a, b), std::max(a, b), wayOf(i, a > b), i, a > b};
       const bool same = tileOf(a) == tileOf(b);
@@ -358,9 +361,9 @@ void Builder::addCrossings()
 
 } // namespace
 
-Layout::Layout(const Assembly &assembly, const std::vector<bool> &actuated)
+Layout::Layout(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still)
 {
-   Builder builder(assembly, actuated, *this);
+   Builder builder(assembly, actuated, still, *this);
    builder.placeCells();
    builder.placeBonds();
 }

@@ -42,12 +42,24 @@ PageVector<T> converted(const std::vector<double> &from)
    return out;
 }
 
+/// Cells that are held in every degree of freedom and follow no curve.
+std::vector<bool> stillCells(const Assembly &assembly, const Drive &drive)
+{
+   std::vector<bool> still(static_cast<std::size_t>(assembly.cells));
+   for (std::int64_t i = 0; i < assembly.cells; ++i)
+      still[i] = assembly.fixed[i] == 63;
+   for (const Drive::Led &led : drive.cells())
+      still[led.cell] = false;
+   return still;
+}
+
 } // namespace
 
 template<typename T>
 VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assembly,
                               const Couplings &couplings, const Options &options)
-    : Motion(scene, assembly, couplings, options), m_layout(assembly, m_actuation.driven(assembly.links)),
+    : Motion(scene, assembly, couplings, options),
+      m_layout(assembly, m_actuation.driven(assembly.links), stillCells(assembly, m_drive)),
       m_kernel(sweepKernel<T>(
           {assembly.damped, assembly.law == Law::small, !options.reproducible, options.instructions}))
 {
