@@ -179,8 +179,8 @@ void SolverBondsSmallTurnsTest::boxesKeepTheirInertia()
          HandScene scene(1e-3);
          scene.addMaterial(kRubber);
          scene.addBlock(2, 1, 1);
-         for (int i = 0; i < 2; ++i) {
-            scene.extent[static_cast<std::size_t>(3 * i + 2)] *= 0.4;
+         for (const int i : {0, 1}) {
+            scene.extent[i == 0 ? 2 : 5] *= 0.4; // along z
             scene.addRow("velocity", {0, 0, 0, 3, 2, 1}, i);
          }
          scene.link();
