@@ -50,6 +50,18 @@ inline Needs needsOf(const Run &run)
    return run.axis == 3 ? Needs::frame : Needs::nothing;
 }
 
+/// Nothing of the lanes whose bonds are not there: what they hold may be no number.
+template<class K, class D, class V>
+HWY_INLINE void keepOnly(D d, unsigned there, BondOut<V> &out)
+{
+   const std::uint8_t bits[8] = {static_cast<std::uint8_t>(there), static_cast<std::uint8_t>(there >> 8)};
+   const auto mask = hn::LoadMaskBits(d, bits);
+   for (Three<V> *v : {&out.force, &out.atA, &out.atB})
+      *v = {hn::IfThenElseZero(mask, v->x), hn::IfThenElseZero(mask, v->y), hn::IfThenElseZero(mask, v->z)};
+   if constexpr (K::damped)
+      out.power = hn::IfThenElseZero(mask, out.power);
+}
+
 template<class K, Needs kNeeds, class D, typename T = hn::TFromD<D>>
 HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
 {
@@ -131,15 +143,8 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
             out.atA = rotateBack<K::fused>(frame, out.atA);
             out.atB = rotateBack<K::fused>(frame, out.atB);
          }
-      if (HWY_UNLIKELY(there != (2u << (lanes - 1)) - 1)) { // a bond that is not there may be no number
-         std::uint8_t bits[8] = {static_cast<std::uint8_t>(there), static_cast<std::uint8_t>(there >> 8)};
-         const auto mask = hn::LoadMaskBits(d, bits);
-         for (Three<V> *v : {&out.force, &out.atA, &out.atB})
-            *v = {hn::IfThenElseZero(mask, v->x), hn::IfThenElseZero(mask, v->y),
-                  hn::IfThenElseZero(mask, v->z)};
-         if constexpr (K::damped)
-            out.power = hn::IfThenElseZero(mask, out.power);
-      }
+      if (HWY_UNLIKELY(there != (2u << (lanes - 1)) - 1))
+         keepOnly<K>(d, there, out);
       addThree(d, ends.outA + at, ends.outStrideA, order, out.force);
       addThree(d, ends.outA + 3 * ends.outStrideA + at, ends.outStrideA, order, out.atA);
       takeThree(d, ends.outB + at, ends.outStrideB, order, out.force);
