@@ -12,9 +12,10 @@ struct Warned
 {
    std::mutex mutex;
    std::set<std::string> told;
-   int muted = 0;
    PluginWarnings to;
 };
+
+thread_local int muted = 0;
 
 Warned &warned()
 {
@@ -27,9 +28,9 @@ Warned &warned()
 void warnOfPlugin(const std::string &sentence, PluginWarning kind)
 {
    Warned &self = warned();
-   const std::lock_guard lock(self.mutex);
-   if (kind == PluginWarning::remark && self.muted > 0)
+   if (kind == PluginWarning::remark && muted > 0)
       return;
+   const std::lock_guard lock(self.mutex);
    if (!self.told.insert(sentence).second)
       return;
    if (self.to)
@@ -46,16 +47,7 @@ void setPluginWarnings(PluginWarnings to)
    self.told.clear();
 }
 
-RemarksMuted::RemarksMuted()
-{
-   const std::lock_guard lock(warned().mutex);
-   ++warned().muted;
-}
-
-RemarksMuted::~RemarksMuted()
-{
-   const std::lock_guard lock(warned().mutex);
-   --warned().muted;
-}
+RemarksMuted::RemarksMuted() { ++muted; }
+RemarksMuted::~RemarksMuted() { --muted; }
 
 } // namespace diatom

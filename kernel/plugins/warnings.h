@@ -18,7 +18,8 @@ void warnOfPlugin(const std::string &sentence, PluginWarning kind = PluginWarnin
 using PluginWarnings = std::function<void(const std::string &sentence, PluginWarning kind)>;
 void setPluginWarnings(PluginWarnings to);
 
-/// While one lives, remarks are not told: for runs that compare, whose results nobody is to trust.
+/// While one lives, remarks of calls that its own thread makes are not told: for runs that compare, whose
+/// results nobody is to trust. Those of a run in another thread are.
 class RemarksMuted
 {
 public:

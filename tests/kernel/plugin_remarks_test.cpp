@@ -5,6 +5,8 @@
 #include "plugins/instance.h"
 #include "plugins/warnings.h"
 
+#include <thread>
+
 using namespace diatom;
 
 namespace {
@@ -28,6 +30,7 @@ private slots:
    void aWarningOfSuccessIsTold();
    void whatIsNoWarningIsNot();
    void aMutedOneIsNotTold();
+   void anotherThreadsIsTold();
    void failuresTellInTheirError();
 
 private:
@@ -68,6 +71,14 @@ void PluginRemarksTest::aMutedOneIsNotTold()
    }
    DIATOM_VERIFY_OK(say("the ice is thin", DIATOM_WARNING, DIATOM_OK));
    QCOMPARE(m_told.size(), std::size_t(2));
+}
+
+/// The studio tries settings in the background while a run plays.
+void PluginRemarksTest::anotherThreadsIsTold()
+{
+   const RemarksMuted muted;
+   std::thread([] { (void)say("the ice is thin", DIATOM_WARNING, DIATOM_OK); }).join();
+   QCOMPARE(m_told.size(), std::size_t(1));
 }
 
 void PluginRemarksTest::failuresTellInTheirError()
