@@ -59,7 +59,7 @@ ExportDialog::ExportDialog(const Session &session, const QString &folder, QWidge
    m_file->setAccessibleName(tr("File to write"));
    m_file->setMinimumWidth(360);
    const QString stem = QFileInfo(session.title()).completeBaseName();
-   m_file->setText(QDir(folder.isEmpty() ? QDir::homePath() : folder).filePath(stem + format().suffix));
+   m_file->setText(QDir(folder).filePath(stem + format().suffix));
    m_words->setObjectName(QStringLiteral("export.words"));
    m_words->setWordWrap(true);
    m_words->setTextFormat(Qt::PlainText);

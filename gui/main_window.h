@@ -95,6 +95,7 @@ private:
    void updateRun();
    void placeOverlays();
    void on(std::string_view action, std::function<void()> act);
+   /// Where a file for this purpose was last; else where the design is, else the home folder.
    QString lastFolder(const char *purpose) const;
    void rememberFolder(const char *purpose, const QString &file);
 

@@ -146,10 +146,7 @@ void MainWindow::chooseExport()
       m_messages->showMessage(tr("There are no cells to export; place some first."), true);
       return;
    }
-   QString folder = lastFolder("export");
-   if (folder.isEmpty() && !m_session.file().empty())
-      folder = QString::fromStdString(m_session.file().parent_path().string());
-   auto *dialog = new ExportDialog(m_session, folder, this);
+   auto *dialog = new ExportDialog(m_session, lastFolder("export"), this);
    dialog->setAttribute(Qt::WA_DeleteOnClose);
    connect(dialog, &QDialog::accepted, this, [this, dialog] {
       if (const auto request = dialog->request())

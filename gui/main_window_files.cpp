@@ -5,6 +5,7 @@
 
 #include <QCoreApplication>
 #include <QDialog>
+#include <QDir>
 #include <QFileDialog>
 #include <QFileInfo>
 #include <QHeaderView>
@@ -31,9 +32,13 @@ std::vector<std::filesystem::path> MainWindow::sampleFolders()
 
 QString MainWindow::lastFolder(const char *purpose) const
 {
-   return m_settings
-              ? m_settings->value(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose))).toString()
-              : QString();
+   const QString remembered =
+       m_settings ? m_settings->value(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose))).toString()
+                  : QString();
+   if (!remembered.isEmpty())
+      return remembered;
+   return m_session.file().empty() ? QDir::homePath()
+                                   : QString::fromStdString(m_session.file().parent_path().string());
 }
 
 void MainWindow::rememberFolder(const char *purpose, const QString &file)
