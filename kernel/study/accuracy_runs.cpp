@@ -21,11 +21,14 @@ constexpr std::array<std::string_view, 4> kAxes{"integrator", "precision", "grad
 constexpr std::size_t kSolvingAxes = 2;
 
 constexpr int kLevels = 4; // step lengths of a ladder, each half of the one before
-constexpr int kLevelsWithoutLimit = 5;
+constexpr int kLevelsWithoutLimit = 7;
+/// Of the steps that a solver without a limit chooses for itself: the longest to try. Where only the end
+/// counts, the way there may be coarse.
+constexpr double kCoarsestOwnSteps = 16;
 constexpr double kOwnShare = 0.02;          // of the budget, for seeing such a choice
 constexpr std::int64_t kCurveSamples = 16;  // of a curve
 constexpr std::int64_t kSwingSamples = 512; // samples where a frequency is wanted: some sixty a swing
-constexpr double kStepsWithoutLimit = 16;   // in the run, at the coarsest, for solvers that no step can upset
+constexpr double kStepsWithoutLimit = 8;    // in the run, at the coarsest, for solvers that no step can upset
 constexpr double kFirstPass = 0.7;          // of the budget; the rest is for timing again
 /// Settings whose longest step is below this part of the longest of all come last: they are there to compare.
 constexpr double kShortStep = 0.1;
@@ -41,6 +44,19 @@ std::array<int, 2> unlike(const std::vector<Choice> &choices, const Values &valu
       if (std::get<std::string>(values.at(choice.name)) != choice.choices.front())
          ++count[choice.name == kAxes[0] || choice.name == kAxes[1] ? 0 : 1];
    return count;
+}
+
+/// Of the curve that the quantity is read from.
+std::int64_t mostSamples(const AccuracyPlan &plan)
+{
+   switch (plan.quantity.when) {
+   case Quantity::When::frequency:
+      return kSwingSamples;
+   case Quantity::When::atTime:
+      return plan.quantity.time >= plan.until ? 1 : kCurveSamples;
+   default:
+      return kCurveSamples;
+   }
 }
 
 /// "verlet f64"; what else differs from the scene follows a comma.
@@ -151,7 +167,7 @@ Status AccuracyRuns::planMotion(std::size_t variant, const Job &job)
          // What the solver refuses is told by the runs themselves.
          ladder.coarsest = m_plan.until / kStepsWithoutLimit;
          if (own)
-            ladder.coarsest = std::min(ladder.coarsest, kMostOwnSteps * *own);
+            ladder.coarsest = std::min(ladder.coarsest, kCoarsestOwnSteps * *own);
       }
       m_ladders.push_back(std::move(ladder));
    }
@@ -181,9 +197,7 @@ Status AccuracyRuns::plan(const Job &job)
 void AccuracyRuns::addSteps(double longest)
 {
    const double stretches = longest > 0 ? m_plan.until / longest : kStepsWithoutLimit;
-   const bool swings = m_plan.quantity.when == Quantity::When::frequency;
-   m_samples = std::clamp<std::int64_t>(std::llround(std::min(stretches, 1e6)), 1,
-                                        swings ? kSwingSamples : kCurveSamples);
+   m_samples = std::clamp<std::int64_t>(std::llround(std::min(stretches, 1e6)), 1, mostSamples(m_plan));
    const double stretch = m_plan.until / static_cast<double>(m_samples);
    for (std::size_t k = 0; k < m_ladders.size(); ++k) {
       AccuracyLadder &ladder = m_ladders[k];

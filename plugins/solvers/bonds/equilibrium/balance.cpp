@@ -57,9 +57,10 @@ double roundingOf(const Assembly &assembly, const State &state, std::int64_t bon
    constexpr double kDigits = 16 * std::numeric_limits<double>::epsilon();
    const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
    const BondConstants &k = assembly.constants[bond];
-   const double moved = norm(state.displacementOf(a)) + norm(state.displacementOf(b)),
-                turned = norm(vec(state.turnOf(a))) + norm(vec(state.turnOf(b)));
-   return kDigits * std::max({k.k[0], k.k[1], k.k[2]}) * (moved + turned * assembly.lengthOf(bond));
+   const double length = assembly.lengthOf(bond),
+                moved = squared(state.displacementOf(a)) + squared(state.displacementOf(b)),
+                turned = squared(vec(state.turnOf(a))) + squared(vec(state.turnOf(b)));
+   return kDigits * std::max({k.k[0], k.k[1], k.k[2]}) * std::sqrt(2 * (moved + turned * (length * length)));
 }
 
 /// Largest force that the actuated rest shape would call up if nothing could move.
@@ -101,8 +102,8 @@ double Balance::bondLoad(std::int64_t bond, const State &state, const RestShape 
    const BondPoint r = pointOf(m_assembly, state, rest, bond, frame, rates);
    const EndForces f = endForces(r);
    out = {transposed(frame, f.force), transposed(frame, f.torqueA), transposed(frame, f.torqueB)};
-   measure.atWork =
-       std::max({measure.atWork, norm(f.force), norm(f.torqueA) / m_pitch, norm(f.torqueB) / m_pitch});
+   const double torque = std::max(squared(f.torqueA), squared(f.torqueB)) / (m_pitch * m_pitch);
+   measure.atWork = std::max(measure.atWork, std::sqrt(std::max(squared(f.force), torque)));
    measure.rounding = std::max(measure.rounding, roundingOf(m_assembly, state, bond));
    if (!rest.d[0].empty())
       measure.atWork = std::max(measure.atWork, blockedForce(k, stretchOf(m_assembly, rest, bond),
@@ -161,8 +162,9 @@ void Balance::external(const State &state, const Loading &loading, Vector &out, 
       if (loads)
          std::copy_n(loading.force.begin() + 6 * i, 6, f);
       put(f, loading.gravity, m_assembly.mass[i]);
-      measure.atWork =
-          std::max({measure.atWork, norm({f[0], f[1], f[2]}), norm({f[3], f[4], f[5]}) / m_pitch});
+      const double most =
+          std::max(squared({f[0], f[1], f[2]}), squared({f[3], f[4], f[5]}) / (m_pitch * m_pitch));
+      measure.atWork = std::max(measure.atWork, std::sqrt(most));
       if (m_assembly.hasGround) // after the loads are weighed: what stands at rest has a sum of nothing
          f[2] += m_assembly.ground.stiffness * std::max(0.0, penetration(m_assembly, state, i));
    }

@@ -49,10 +49,12 @@ double StepNewton::largest(const Vector &change) const
 double StepNewton::rounding(const State &state) const
 {
    constexpr double kDigits = 32 * std::numeric_limits<double>::epsilon();
+   const double pitch = m_balance->pitch();
    double most = 0;
    for (std::int64_t i = 0; i < state.n; ++i)
-      most = std::max({most, norm(state.displacementOf(i)) / m_balance->pitch(), norm(vec(state.turnOf(i)))});
-   return kDigits * most;
+      most =
+          std::max({most, squared(state.displacementOf(i)) / (pitch * pitch), squared(vec(state.turnOf(i)))});
+   return kDigits * std::sqrt(most);
 }
 
 void StepNewton::refresh(const sdk::Call &call, StepEquations &equations, const Vector &increment,

@@ -19,6 +19,7 @@ inline Vec3 cross(Vec3 a, Vec3 b)
 {
    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+inline double squared(Vec3 a) { return dot(a, a); }
 inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
 
 /// Unit quaternion, body to world, Hamilton product.
