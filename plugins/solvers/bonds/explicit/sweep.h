@@ -73,6 +73,11 @@ struct Window
    bool moves;
 };
 
+/// Of cells that are no cubes: inertia of a ball and its inverse; an axis x y z at rest, how much more the
+/// inertia is about it, and how much more the inverse; another such axis. Two axes are enough for any
+/// inertia, one where two of its principal values are alike.
+enum BoxColumn : std::uint8_t { kBall, kFirstAxis = 2, kSecondAxis = 7, kBoxColumns = 12 };
+
 /// What a step does with the forces.
 struct Move
 {
@@ -101,8 +106,8 @@ struct SweepWork
    T *start = nullptr, *sum = nullptr; // of stages: columns like those of the state
    const T *inverseMass = nullptr, *inverseInertia = nullptr;
    const std::uint8_t *held = nullptr;
-   const T *boxes = nullptr; // of cells that are no cubes: orientation w x y z, inertias x y z, their
-                             // inverse; else null
+   const T *boxes = nullptr; // of cells that are no cubes: columns by BoxColumn; else null
+   bool twoAxes = false;     // whether boxes have a second axis
    const T *loads = nullptr; // six columns, null without loads
    T gravity[3]{}, drag = 0;
 

@@ -112,24 +112,34 @@ HWY_NOINLINE void hold(D d, const std::uint8_t *held, Three<V> &move, Three<V> &
    }
 }
 
-/// Inertia of cells that are no cubes, as they are turned.
+/// Inertia of cells that are no cubes, as they are turned: that of a ball, and more or less about an axis or
+/// two.
 template<bool kFused, class V>
 struct Boxes
 {
-   Three<V> own[3]; // rows of the matrix from own axes to the world's
-   Three<V> inertia, inverse;
+   struct About
+   {
+      Three<V> axis;
+      V inertia, inverse; // beside those of the ball
+
+      Three<V> add(V more, Three<V> v, Three<V> to) const
+      {
+         return mad<kFused>(hn::Mul(more, dot<kFused>(axis, v)), axis, to);
+      }
+   };
+   V ball, inverse;
+   About first, second;
+   bool two;
 
    Three<V> momentum(Three<V> w) const
    {
-      const Three<V> in = rotateBack<kFused>(own, w);
-      return rotate<kFused>(
-          own, Three<V>{hn::Mul(inertia.x, in.x), hn::Mul(inertia.y, in.y), hn::Mul(inertia.z, in.z)});
+      const Three<V> out = first.add(first.inertia, w, ball * w);
+      return two ? second.add(second.inertia, w, out) : out;
    }
    Three<V> spin(Three<V> momentum) const
    {
-      const Three<V> in = rotateBack<kFused>(own, momentum);
-      return rotate<kFused>(
-          own, Three<V>{hn::Mul(inverse.x, in.x), hn::Mul(inverse.y, in.y), hn::Mul(inverse.z, in.z)});
+      const Three<V> out = first.add(first.inverse, momentum, inverse * momentum);
+      return two ? second.add(second.inverse, momentum, out) : out;
    }
 };
 
@@ -141,24 +151,30 @@ HWY_INLINE Turn<V> product(Turn<V> a, Turn<V> b)
    return {hn::Sub(hn::Mul(a.w, b.w), dot<kFused>(av, bv)), v.x, v.y, v.z};
 }
 
+/// A vector turned by a unit quaternion.
+template<bool kFused, class V>
+HWY_INLINE Three<V> turnedVector(Turn<V> q, Three<V> v)
+{
+   const Three<V> axis{q.x, q.y, q.z}, once = cross<kFused>(axis, v), twice = once + once;
+   return mad<kFused>(q.w, twice, v + cross<kFused>(axis, twice));
+}
+
 template<bool kFused, class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>
 HWY_INLINE Boxes<kFused, V> boxesOf(D d, const SweepWork<T> &work, std::size_t cell, Turn<V> turn)
 {
-   const T *box = work.boxes + cell;
    const std::size_t stride = work.stride;
-   const Turn<V> q =
-       product<kFused>(turn, Turn<V>{hn::LoadU(d, box), hn::LoadU(d, box + stride),
-                                     hn::LoadU(d, box + 2 * stride), hn::LoadU(d, box + 3 * stride)});
-   const V one = setTo(d, 1);
-   const Three<V> v{q.x, q.y, q.z}, f = v + v;
-   const V xx = hn::Mul(f.x, v.x), yy = hn::Mul(f.y, v.y), zz = hn::Mul(f.z, v.z);
-   const V xy = hn::Mul(f.x, v.y), xz = hn::Mul(f.x, v.z), yz = hn::Mul(f.y, v.z);
-   const V wx = hn::Mul(f.x, q.w), wy = hn::Mul(f.y, q.w), wz = hn::Mul(f.z, q.w);
-   return {{{hn::Sub(one, hn::Add(yy, zz)), hn::Sub(xy, wz), hn::Add(xz, wy)},
-            {hn::Add(xy, wz), hn::Sub(one, hn::Add(xx, zz)), hn::Sub(yz, wx)},
-            {hn::Sub(xz, wy), hn::Add(yz, wx), hn::Sub(one, hn::Add(xx, yy))}},
-           three(d, box + 4 * stride, stride, kWorld),
-           three(d, box + 7 * stride, stride, kWorld)};
+   const auto column = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, work.boxes + cell + k * stride); };
+   const auto axis = [&](std::size_t k) HWY_ATTR {
+      return turnedVector<kFused>(turn, three(d, work.boxes + cell + k * stride, stride, kWorld));
+   };
+   Boxes<kFused, V> out;
+   out.ball = column(kBall);
+   out.inverse = column(kBall + 1);
+   out.first = {axis(kFirstAxis), column(kFirstAxis + 3), column(kFirstAxis + 4)};
+   out.two = work.twoAxes;
+   if (out.two)
+      out.second = {axis(kSecondAxis), column(kSecondAxis + 3), column(kSecondAxis + 4)};
+   return out;
 }
 
 template<class D, typename T = hn::TFromD<D>, class V = hn::Vec<D>>

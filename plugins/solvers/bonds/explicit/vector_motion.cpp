@@ -53,6 +53,33 @@ std::vector<bool> stillCells(const Assembly &assembly, const Drive &drive)
    return still;
 }
 
+/// Of a cell's inertia, as BoxColumn has it: the ball is that of the two principal values that are most
+/// alike, or of one of them.
+std::array<double, kBoxColumns> boxColumns(const Assembly &assembly, std::int64_t cell)
+{
+   constexpr double kAlike = 1e-12;
+   double own[3];
+   for (std::size_t k = 0; k < 3; ++k)
+      own[k] = assembly.boxInertia[k][cell];
+   const auto apart = [&](int k) { return std::abs(own[(k + 1) % 3] - own[(k + 2) % 3]); };
+   const int first = apart(0) <= apart(1) ? (apart(0) <= apart(2) ? 0 : 2) : (apart(1) <= apart(2) ? 1 : 2);
+   const int second = (first + 1) % 3, ball = (first + 2) % 3;
+   const Mat3 frame = matrix(assembly.orientation[cell]);
+   std::array<double, kBoxColumns> out{own[ball], 1 / own[ball]};
+   const auto about = [&](std::size_t column, int k) {
+      const Vec3 axis = frame * Vec3{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
+      out[column] = axis.x;
+      out[column + 1] = axis.y;
+      out[column + 2] = axis.z;
+      out[column + 3] = own[k] - own[ball];
+      out[column + 4] = 1 / own[k] - 1 / own[ball];
+   };
+   about(kFirstAxis, first);
+   if (apart(first) > kAlike * own[ball])
+      about(kSecondAxis, second);
+   return out;
+}
+
 } // namespace
 
 template<typename T>
@@ -114,17 +141,16 @@ template<typename T>
 void VectorMotion<T>::takeBoxes()
 {
    const Assembly &assembly = *m_assembly;
-   m_boxes.assign(10 * m_sweep.stride, 1);
+   std::vector<std::array<double, kBoxColumns>> all(static_cast<std::size_t>(assembly.cells));
    for (std::int64_t i = 0; i < assembly.cells; ++i) {
-      const Quat o = assembly.orientation[i];
-      double all[10] = {o.w, o.x, o.y, o.z};
-      for (std::size_t k = 0; k < 3; ++k) {
-         all[4 + k] = assembly.boxInertia[k][i];
-         all[7 + k] = 1 / all[4 + k];
-      }
-      for (std::size_t k = 0; k < 10; ++k)
-         m_boxes[k * m_sweep.stride + m_layout.place[i]] = static_cast<T>(all[k]);
+      all[i] = boxColumns(assembly, i);
+      m_sweep.twoAxes = m_sweep.twoAxes || all[i][kSecondAxis + 3] != 0;
    }
+   const std::size_t columns = m_sweep.twoAxes ? kBoxColumns : kSecondAxis;
+   m_boxes.assign(columns * m_sweep.stride, 0);
+   for (std::int64_t i = 0; i < assembly.cells; ++i)
+      for (std::size_t k = 0; k < columns; ++k)
+         m_boxes[k * m_sweep.stride + m_layout.place[i]] = static_cast<T>(all[i][k]);
    m_sweep.boxes = m_boxes.data();
 }
 
