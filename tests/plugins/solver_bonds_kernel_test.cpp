@@ -83,6 +83,7 @@ private slots:
    void forcesAreThoseOfTheReference();
    void invariantsHoldInEveryConfiguration();
    void forcesAreTheGradientOfTheEnergy();
+   void aChangeOfRestShapeGainsTheDifferenceOfEnergies();
    void workAroundAClosedLoopVanishes();
    void steppedBeamIsExactForUnlikeHalves();
    void aSteppedBondThatOnlyBendsKeepsItsLength();
@@ -225,6 +226,37 @@ void SolverBondsKernelTest::forcesAreTheGradientOfTheEnergy()
          QVERIFY2(std::abs(parts[1] - of(f.torqueA)) < 1e-8, qPrintable(QString::number(trial)));
          QVERIFY2(std::abs(parts[2] - of(f.torqueB)) < 1e-8, qPrintable(QString::number(trial)));
       }
+   }
+}
+
+/// Energies of random states and rest shapes, stepped and anisotropic, exact and small turns: 1e-13 of the
+/// larger one is their rounding. A change of 1e-9 of the length, whose difference of energies is mostly
+/// rounding, keeps its digits against the slope.
+void SolverBondsKernelTest::aChangeOfRestShapeGainsTheDifferenceOfEnergies()
+{
+   std::mt19937_64 random(20261128);
+   std::uniform_real_distribution<double> unit(-1, 1);
+   const auto any = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
+   BondConstants k;
+   const double stiffness[3] = {1, 0.3, 0.5}, turning[3] = {0.08, 0.02, 0.15};
+   std::copy_n(stiffness, 3, k.k);
+   std::copy_n(turning, 3, k.c);
+   k.s[0] = k.turn[0] = 0.2;
+   k.s[1] = k.turn[1] = -0.1;
+   for (int trial = 0; trial < 400; ++trial) {
+      Ends ends{{}, exponential(0.4 * any()), exponential(0.4 * any()), {}, {}, {}, 1};
+      ends.separation = Vec3{1, 0, 0} + 0.2 * any();
+      const Relation r = trial % 2 ? relate(ends) : relateSmall(ends);
+      using Shape = std::array<Vec3, 2>;
+      const Shape from{Vec3{1, 0, 0} + 0.1 * any(), 0.3 * any()};
+      const Shape to{Vec3{1, 0, 0} + 0.1 * any(), trial % 4 < 2 ? from[1] : 0.3 * any()};
+      const double before = bondEnergy(r, k, from[0], from[1]), after = bondEnergy(r, k, to[0], to[1]);
+      QVERIFY2(std::abs(energyGain(r, k, from, to) - (after - before)) < 1e-13 * std::max(before, after),
+               qPrintable(QString::number(trial)));
+      const Vec3 d = ownSeparation(r, k, r.phi - from[1]) - from[0];
+      const Shape near{from[0] + Vec3{1e-9, 0, 0}, from[1]};
+      const double by = near[0].x - from[0].x, slope = -k.k[0] * d.x * by;
+      QVERIFY(std::abs(energyGain(r, k, from, near) - (slope + 0.5 * k.k[0] * by * by)) < 1e-23);
    }
 }
 

@@ -58,6 +58,7 @@ private slots:
    void cubeTurnsPermuteTheConstants();
    void skewLinksWorkLikeAlignedOnes();
    void actuatorsReachTheirFreeShape();
+   void signalsThatJumpActAtOnce();
    void cancelStopsAtOnce();
 };
 
@@ -248,6 +249,47 @@ void SolverBondsMotionTest::cantileverSagsAsTheReferenceSays()
       QVERIFY2(std::abs(sag - (scale == 1 ? 3.11 : 3.27)) < 0.006, qPrintable(QString::number(sag)));
       if (scale == 1)
          QVERIFY(std::abs(shift + 0.43) < 0.006);
+   }
+}
+
+/// A signal that comes later acts as one that is there from the start: the same motion and the same account
+/// of work, that much later, but for the rounding of times (1e-16 of a millisecond against steps of
+/// microseconds).
+void SolverBondsMotionTest::signalsThatJumpActAtOnce()
+{
+   for (const char *instructions : {"best", "scalar"}) {
+      const auto made = [](double volts) {
+         HandScene scene(1e-3);
+         scene.addMaterial(
+             {{"density", 3500}, {"youngs_modulus", 5e5}, {"poisson_ratio", 0.3}, {"damping_ratio", 0.1}});
+         scene.addBlock(5, 1, 1);
+         scene.link();
+         scene.fix(0);
+         scene.effects.push_back("actuation");
+         scene.effects.push_back("damping");
+         scene.addRow("source", {1, 1, 0, 1, 0, 2 * volts}, 0); // always so many volts
+         scene.addRow("actuator", {0, 0, 0.2, 0, -1}, 2);
+         return scene;
+      };
+      HandScene early = made(1), late = made(0);
+      Run a(early, {.instructions = instructions}), b(late, {.instructions = instructions});
+      QVERIFY2(b.status == DIATOM_OK, b.host.said.c_str());
+      QCOMPARE(a.to(2e-3, 2e-6), DIATOM_OK);
+      QCOMPARE(b.to(1e-3, 2e-6), DIATOM_OK);
+      const std::int64_t where = 0;
+      const double source[6] = {1, 1, 0, 1, 0, 2};
+      const diatom_channel channel{"source", 1, 6, &where, source};
+      QCOMPARE(b.table->apply(b.self, &b.host.call, &channel, 1), DIATOM_OK);
+      QCOMPARE(b.to(3e-3, 2e-6), DIATOM_OK);
+      const auto moved = a.read("position"), movedLate = b.read("position");
+      QVERIFY(moved[3 * 4] > 4.1e-3);
+      for (std::size_t i = 0; i < moved.size(); ++i)
+         QVERIFY2(std::abs(moved[i] - movedLate[i]) < 1e-12, qPrintable(QString::number(i)));
+      const auto energy = a.read("energy"), energyLate = b.read("energy");
+      QVERIFY(energy[5] > 0);
+      for (std::size_t i = 0; i < energy.size(); ++i)
+         QVERIFY2(std::abs(energy[i] - energyLate[i]) < 1e-8 * energy[5],
+                  qPrintable(QString("%1: %2 %3").arg(i).arg(energy[i]).arg(energyLate[i])));
    }
 }
 

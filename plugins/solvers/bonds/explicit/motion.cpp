@@ -1,6 +1,15 @@
 #include "explicit/motion.h"
 
+#include <cmath>
+
 namespace bonds {
+
+namespace {
+
+/// Parts of a step that two times may differ by and still be the same moment.
+constexpr double kSameTime = 1e-6;
+
+} // namespace
 
 Motion::Motion(const sdk::SceneView &scene, const Assembly &assembly, const Couplings &couplings,
                const Options &options)
@@ -75,10 +84,11 @@ double Motion::workBy(const Acting &acting) const
    return work;
 }
 
-std::vector<Relation> Motion::look() const
+const std::vector<Relation> &Motion::look() const
 {
    readActuated();
-   return m_actuation.look(*m_assembly, m_state);
+   m_actuation.look(*m_assembly, m_state, m_seen);
+   return m_seen;
 }
 
 /// What a rest shape adds to the energy of the accepted one.
@@ -106,6 +116,25 @@ void Motion::settle(const std::vector<Relation> &seen)
    m_settled = true;
 }
 
+/// The rest shape goes from that of `time` to that of the step's end.
+void Motion::actuate(double time, double dt)
+{
+   const std::vector<Relation> &seen = look();
+   const bool goesOn = !m_settled && !m_newSignals && std::abs(time - m_restTime) < kSameTime * dt;
+   if (!goesOn) { // first step, or new signals
+      if (!m_settled)
+         settle(seen);
+      m_actuation.setRest(time, m_rest);
+      m_work += restChange(seen, m_rest);
+      acceptRest();
+      m_newSignals = false;
+   }
+   m_restTime = time + dt;
+   m_actuation.setRest(m_restTime, m_next);
+   m_work += 0.5 * restChange(seen, m_next); // where it goes on, the last step's half too
+   acceptRest();
+}
+
 // The work of the actuators is the energy that the change of rest shape adds, averaged over where the cells
 // are before and after the step: second order, and exact for a jump while nothing moves. Where they are after
 // a step they are before the next: each looks at the cells once.
@@ -113,14 +142,7 @@ void Motion::step(const sdk::Call &call, double time, double dt)
 {
    const bool actuated = m_actuation.active();
    if (actuated) {
-      const auto seen = look();
-      if (!m_settled)
-         settle(seen);
-      m_actuation.setRest(time, m_rest);
-      m_work += restChange(seen, m_rest); // first step, or new signals
-      acceptRest();
-      m_actuation.setRest(time + dt, m_next);
-      m_work += 0.5 * restChange(seen, m_next);
+      actuate(time, dt);
       restChanged();
    }
    advance(call, time, dt);

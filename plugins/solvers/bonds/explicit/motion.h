@@ -18,7 +18,11 @@ public:
    void step(const sdk::Call &call, double time, double dt);
    virtual void setLoads(const sdk::Channel &loads);
    virtual void gravityChanged() {}
-   void setSources(const sdk::Channel &sources) { m_actuation.setSources(sources); }
+   void setSources(const sdk::Channel &sources)
+   {
+      m_actuation.setSources(sources);
+      m_newSignals = true;
+   }
    void setCurves(std::span<const diatom_channel> channels);
 
    /// The state of the moment.
@@ -77,7 +81,8 @@ protected:
    double m_behind = 0; // s, by which the velocities of semi-implicit Euler lag
 
 private:
-   std::vector<Relation> look() const;
+   void actuate(double time, double dt);
+   const std::vector<Relation> &look() const;
    double restChange(const std::vector<Relation> &seen, const RestShape &rest) const;
    void acceptRest();
    /// Work (J) of the last step's change of rest shape that is counted when the next one looks at the cells.
@@ -87,6 +92,9 @@ private:
    RestShape m_next;    // at the end of the step
    RestShape m_counted; // whose work is counted; of couplings
    bool m_settled = true;
+   bool m_newSignals = false;
+   double m_restTime = 0;                // s, of m_rest between steps
+   mutable std::vector<Relation> m_seen; // by the last look
 
 protected:
    /// All that changes while stepping, but the state.

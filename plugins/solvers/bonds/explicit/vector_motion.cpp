@@ -102,6 +102,7 @@ VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assem
       setLoads(scene.channel("force", 6));
    if (assembly.hasGround) {
       m_touching.assign(m_sweep.stride, T(-1e30));
+      m_gripping.assign(m_sweep.stride, 0);
       for (std::int64_t i = 0; i < assembly.cells; ++i)
          m_touching[m_layout.place[i]] =
              static_cast<T>(assembly.ground.height - assembly.rest[2][i] + assembly.halfHeight[i]);
@@ -214,13 +215,11 @@ std::string VectorMotion<T>::how() const
 }
 
 template<typename T>
-void VectorMotion<T>::pull(std::int64_t cell, bool rates) const
+void VectorMotion<T>::pull(std::int64_t cell) const
 {
    const std::size_t at = m_layout.place[cell];
    for (int k = 0; k < 13; ++k)
-      m_state.column(k)[cell] = static_cast<double>(
-          rates && k >= 7 ? m_sweep.rate[static_cast<std::size_t>(k - 7) * m_sweep.stride + at]
-                          : column(k)[at]);
+      m_state.column(k)[cell] = static_cast<double>(column(k)[at]);
 }
 
 template<typename T>
@@ -320,6 +319,8 @@ double VectorMotion<T>::restore()
    m_columns = m_savedColumns;
    if (m_assembly->hasFriction)
       m_state.grip = m_saved.grip;
+   for (std::int64_t i = 0; i < m_assembly->cells && m_assembly->hasFriction; ++i)
+      m_gripping[m_layout.place[i]] = grips(i);
    m_stale = true;
    return Motion::restore();
 }

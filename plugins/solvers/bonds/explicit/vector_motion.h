@@ -50,12 +50,16 @@ private:
    void sweep(const sdk::Call &call, const Move &move, double weight, double ahead = 0);
    void visitBefore(Visit &visit, std::uint32_t begin, std::uint32_t end, T *lo, const T *hi,
                     std::size_t hiStride);
+   bool findTouching(std::uint32_t begin, std::uint32_t count, std::uint8_t *touches, bool gripping) const;
+   bool grips(std::int64_t cell) const { return m_state.grip[0][cell] != 0 || m_state.grip[1][cell] != 0; }
+   void pullContact(std::int64_t cell, bool rates) const;
+   void visitTouching(Visit &visit, std::uint32_t begin, std::uint32_t end, T *lo);
    void visitDriven(Visit &visit, std::uint32_t place, const T *lo, const T *hi, std::size_t hiStride);
    void gripMoves(Sums &sums, std::uint32_t begin, std::uint32_t end, double dt);
    void inStages(const sdk::Call &call, double time, double dt);
    void halfDrift(const sdk::Call &call, double dt);
-   /// One cell from the columns to m_state, with the velocities that dampers see; and back.
-   void pull(std::int64_t cell, bool rates = false) const;
+   /// One cell from the columns to m_state; and back.
+   void pull(std::int64_t cell) const;
    void push(std::int64_t cell);
 
    T *column(int k) { return m_columns.data() + static_cast<std::size_t>(k) * m_sweep.stride; }
@@ -69,6 +73,7 @@ private:
    PageVector<T> m_rooms;             // of tiles, one after another
    std::vector<std::size_t> m_roomAt; // of each tile
    std::vector<std::uint8_t> m_heldPlaces;
+   std::vector<std::uint8_t> m_gripping; // places whose cell's friction springs are stretched
    std::vector<std::int64_t> m_actuatedCells;
    std::vector<Visit> m_visits; // of tiles
    std::vector<SweepSums> m_sweepSums;

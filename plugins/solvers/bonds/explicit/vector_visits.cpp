@@ -45,30 +45,65 @@ void VectorMotion<T>::visitDriven(Visit &visit, std::uint32_t place, const T *lo
    }
 }
 
+/// Of the cells [begin, begin + count), those that touch the ground or whose friction springs are stretched
+/// where that counts; false where there are none.
+template<typename T>
+bool VectorMotion<T>::findTouching(std::uint32_t begin, std::uint32_t count, std::uint8_t *touches,
+                                   bool gripping) const
+{
+   const T *height = column(2) + begin, *ground = m_touching.data() + begin;
+   const std::uint8_t *grips = m_gripping.data() + begin;
+   std::uint8_t any = 0;
+   for (std::uint32_t i = 0; i < count; ++i) {
+      touches[i] = ground[i] - height[i] > 0 || (gripping && grips[i] != 0);
+      any |= touches[i];
+   }
+   return any != 0;
+}
+
+/// Brings what contact asks of a cell to m_state.
+template<typename T>
+void VectorMotion<T>::pullContact(std::int64_t cell, bool rates) const
+{
+   const std::size_t at = m_layout.place[cell];
+   m_state.column(2)[cell] = static_cast<double>(column(2)[at]);
+   const T *from = (rates ? m_sweep.rate : column(7)) + at;
+   for (int k = 0; k < 5; ++k) // no contact asks for the spin about the vertical
+      m_state.column(7 + k)[cell] = static_cast<double>(from[static_cast<std::size_t>(k) * m_sweep.stride]);
+}
+
+/// Contact of a chunk's cells, before they are kicked.
+template<typename T>
+void VectorMotion<T>::visitTouching(Visit &visit, std::uint32_t begin, std::uint32_t end, T *lo)
+{
+   const Assembly &assembly = *m_assembly;
+   std::uint8_t touches[kChunk];
+   if (!findTouching(begin, end - begin, touches, assembly.hasFriction))
+      return;
+   for (std::uint32_t i = 0; i < end - begin; ++i) {
+      const std::int64_t cell = touches[i] ? m_layout.cell[begin + i] : -1;
+      if (cell < 0)
+         continue;
+      pullContact(cell, true);
+      Vec3 force, torque;
+      addContact(assembly, m_state, cell, visit.ahead, visit.weight, force, torque, visit.sums);
+      if (visit.move.last && assembly.hasFriction)
+         driftContact(assembly, m_state, cell, visit.move.drift, visit.sums);
+      if (assembly.hasFriction)
+         m_gripping[begin + i] = grips(cell);
+      const double all[6] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
+      for (std::size_t k = 0; k < 6; ++k)
+         lo[k * kChunk + i] += static_cast<T>(all[k]);
+   }
+}
+
 /// Contact and drives, before a chunk's cells are kicked.
 template<typename T>
 void VectorMotion<T>::visitBefore(Visit &visit, std::uint32_t begin, std::uint32_t end, T *lo, const T *hi,
                                   std::size_t hiStride)
 {
-   const Assembly &assembly = *m_assembly;
-   if (assembly.hasGround)
-      for (std::uint32_t place = begin; place < end; ++place) {
-         const std::int64_t cell = m_layout.cell[place];
-         const bool near = m_touching[place] - column(2)[place] > 0;
-         if (!near && (cell < 0 || !assembly.hasFriction ||
-                       (m_state.grip[0][cell] == 0 && m_state.grip[1][cell] == 0)))
-            continue;
-         if (cell < 0)
-            continue;
-         pull(cell, true);
-         Vec3 force, torque;
-         addContact(assembly, m_state, cell, visit.ahead, visit.weight, force, torque, visit.sums);
-         if (visit.move.last && assembly.hasFriction)
-            driftContact(assembly, m_state, cell, visit.move.drift, visit.sums);
-         const double all[6] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
-         for (std::size_t k = 0; k < 6; ++k)
-            lo[k * kChunk + place - begin] += static_cast<T>(all[k]);
-      }
+   if (m_assembly->hasGround)
+      visitTouching(visit, begin, end, lo);
    if (m_drivenPlaces.empty() || visit.move.predict)
       return;
    for (std::uint32_t place = begin; place < end; ++place)
@@ -85,11 +120,19 @@ void VectorMotion<T>::visitBefore(Visit &visit, std::uint32_t begin, std::uint32
 template<typename T>
 void VectorMotion<T>::gripMoves(Sums &sums, std::uint32_t begin, std::uint32_t end, double dt)
 {
-   for (std::uint32_t place = begin; place < end; ++place) {
-      if (!(m_touching[place] - column(2)[place] > 0) || m_layout.cell[place] < 0)
+   for (; begin < end; begin += kChunk) {
+      const std::uint32_t count = std::min(end - begin, kChunk);
+      std::uint8_t touches[kChunk];
+      if (!findTouching(begin, count, touches, false))
          continue;
-      pull(m_layout.cell[place]);
-      driftContact(*m_assembly, m_state, m_layout.cell[place], dt, sums);
+      for (std::uint32_t i = 0; i < count; ++i) {
+         const std::int64_t cell = touches[i] ? m_layout.cell[begin + i] : -1;
+         if (cell < 0)
+            continue;
+         pullContact(cell, false);
+         driftContact(*m_assembly, m_state, cell, dt, sums);
+         m_gripping[begin + i] = grips(cell);
+      }
    }
 }
 

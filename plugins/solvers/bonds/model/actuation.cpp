@@ -143,13 +143,11 @@ void Actuation::setRest(double time, RestShape &rest) const
    }
 }
 
-std::vector<Relation> Actuation::look(const Assembly &assembly, const State &state) const
+void Actuation::look(const Assembly &assembly, const State &state, std::vector<Relation> &seen) const
 {
-   std::vector<Relation> seen;
-   seen.reserve(m_bonds.size());
+   seen.clear();
    for (const std::int64_t bond : m_bonds)
       seen.push_back(relationOf(assembly, state, bond));
-   return seen;
 }
 
 double Actuation::energyChange(const Assembly &assembly, const std::vector<Relation> &seen,
@@ -159,12 +157,9 @@ double Actuation::energyChange(const Assembly &assembly, const std::vector<Relat
    double change = 0;
    for (std::size_t i = 0; i < m_bonds.size(); ++i) {
       const std::int64_t bond = m_bonds[i];
-      const Vec3 d = rest.separation(bond), phi = rest.turn(bond);
-      const auto &[oldD, oldPhi] = m_accepted[i];
-      if (same(d, oldD) && same(phi, oldPhi))
-         continue;
-      const BondConstants &k = assembly.constants[bond];
-      change += bondEnergy(seen[i], k, d, phi) - bondEnergy(seen[i], k, oldD, oldPhi);
+      const std::array<Vec3, 2> now{rest.separation(bond), rest.turn(bond)};
+      if (!same(now[0], m_accepted[i][0]) || !same(now[1], m_accepted[i][1]))
+         change += energyGain(seen[i], assembly.constants[bond], m_accepted[i], now);
    }
    return change;
 }

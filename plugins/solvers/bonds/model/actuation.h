@@ -39,7 +39,7 @@ public:
    /// Rest shape of the driven bonds, one after another.
    using Shapes = std::vector<std::array<Vec3, 2>>;
    /// What the driven bonds see of their cells.
-   std::vector<Relation> look(const Assembly &assembly, const State &state) const;
+   void look(const Assembly &assembly, const State &state, std::vector<Relation> &seen) const;
    /// Elastic energy (J) that changing the rest shape from the accepted one to `rest` would add, the cells
    /// held where they were seen: the actuators' work.
    double energyChange(const Assembly &assembly, const std::vector<Relation> &seen,

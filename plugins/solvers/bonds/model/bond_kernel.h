@@ -6,6 +6,8 @@
 
 #include "model/vector.h"
 
+#include <array>
+
 namespace bonds {
 
 /// What turns do to a bond: all that they do, or less where that is asked for.
@@ -240,6 +242,18 @@ inline double bondEnergy(const Relation &r, const BondConstants &k, Vec3 restD, 
 {
    const Vec3 phi = r.phi - restPhi, d = ownSeparation(r, k, phi) - restD;
    return 0.5 * (dot(scaled(k.k, d), d) + dot(scaled(k.c, phi), phi));
+}
+
+/// J that a bond gains when its rest shape changes and its cells stay where they are.
+inline double energyGain(const Relation &r, const BondConstants &k, const std::array<Vec3, 2> &from,
+                         const std::array<Vec3, 2> &to)
+{
+   const Vec3 turning = from[1] - to[1], phi = r.phi - from[1];
+   const Vec3 own = ownSeparation(r, k, phi), d = own - from[0];
+   Vec3 moving = from[0] - to[0];
+   if (dot(turning, turning) != 0)
+      moving = moving + (ownSeparation(r, k, phi + turning) - own);
+   return dot(scaled(k.k, moving), d + 0.5 * moving) + dot(scaled(k.c, turning), phi + 0.5 * turning);
 }
 
 } // namespace bonds

@@ -58,17 +58,25 @@ struct State
    std::array<Column, 2> grip; // m, tangential spring of the ground contact; empty without friction
 };
 
+/// A bond's ends in its own axes, as they stand: without velocities and spins.
+inline Ends poseOf(const Assembly &assembly, const State &state, std::int64_t bond, const Mat3 &frame)
+{
+   const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
+   Ends ends;
+   ends.length = assembly.lengthOf(bond);
+   ends.separation = frame * (state.displacementOf(b) - state.displacementOf(a));
+   ends.separation.x += ends.length;
+   ends.qa = inAxes(frame, state.turnOf(a));
+   ends.qb = inAxes(frame, state.turnOf(b));
+   return ends;
+}
+
 /// A bond's ends in its own axes.
 inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bond)
 {
    const Mat3 frame = assembly.frameOf(bond);
    const std::int64_t a = assembly.a[bond], b = assembly.b[bond];
-   Ends ends;
-   ends.length = assembly.lengthOf(bond);
-   ends.separation = frame * (state.displacementOf(b) - state.displacementOf(a));
-   ends.separation.x += assembly.lengthOf(bond);
-   ends.qa = inAxes(frame, state.turnOf(a));
-   ends.qb = inAxes(frame, state.turnOf(b));
+   Ends ends = poseOf(assembly, state, bond, frame);
    ends.dv = frame * (state.velocityOf(b) - state.velocityOf(a));
    ends.wa = frame * state.spinOf(a);
    ends.wb = frame * state.spinOf(b);
@@ -77,7 +85,7 @@ inline Ends endsOf(const Assembly &assembly, const State &state, std::int64_t bo
 
 inline Relation relationOf(const Assembly &assembly, const State &state, std::int64_t bond)
 {
-   const Ends ends = endsOf(assembly, state, bond);
+   const Ends ends = poseOf(assembly, state, bond, assembly.frameOf(bond));
    return state.smallTurns ? relateSmall(ends) : relate(ends);
 }
 
