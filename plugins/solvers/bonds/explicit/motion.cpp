@@ -38,6 +38,13 @@ void Motion::setLoads(const sdk::Channel &loads)
       std::copy_n(loads.row(i), 6, m_loads.begin() + 6 * loads.where(i));
 }
 
+void Motion::setSources(const sdk::Channel &sources)
+{
+   if (m_actuation.active() && !m_settled)
+      settle(look());
+   m_actuation.setSources(sources);
+}
+
 void Motion::setCurves(std::span<const diatom_channel> channels)
 {
    if (!m_drive.active())
@@ -120,14 +127,13 @@ void Motion::settle(const std::vector<Relation> &seen)
 void Motion::actuate(double time, double dt)
 {
    const std::vector<Relation> &seen = look();
-   const bool goesOn = !m_settled && !m_newSignals && std::abs(time - m_restTime) < kSameTime * dt;
+   const bool goesOn = !m_settled && std::abs(time - m_restTime) < kSameTime * dt;
    if (!goesOn) { // first step, or new signals
       if (!m_settled)
          settle(seen);
       m_actuation.setRest(time, m_rest);
       m_work += restChange(seen, m_rest);
       acceptRest();
-      m_newSignals = false;
    }
    m_restTime = time + dt;
    m_actuation.setRest(m_restTime, m_next);

@@ -18,11 +18,7 @@ public:
    void step(const sdk::Call &call, double time, double dt);
    virtual void setLoads(const sdk::Channel &loads);
    virtual void gravityChanged() {}
-   void setSources(const sdk::Channel &sources)
-   {
-      m_actuation.setSources(sources);
-      m_newSignals = true;
-   }
+   void setSources(const sdk::Channel &sources);
    void setCurves(std::span<const diatom_channel> channels);
 
    /// The state of the moment.
@@ -92,7 +88,6 @@ private:
    RestShape m_next;    // at the end of the step
    RestShape m_counted; // whose work is counted; of couplings
    bool m_settled = true;
-   bool m_newSignals = false;
    double m_restTime = 0;                // s, of m_rest between steps
    mutable std::vector<Relation> m_seen; // by the last look
 
