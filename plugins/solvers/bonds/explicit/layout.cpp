@@ -14,8 +14,9 @@ namespace {
 /// Cells in a cross-section of a tile: what of them waits for the next plane stays in the cache.
 constexpr std::size_t kSection = 1536;
 constexpr std::size_t kTileCells = 10000, kMostTiles = 16;
-/// Bonds of a block that make it worth while to compute all sixteen places.
-constexpr int kFull = 6;
+/// Bonds of a vector that make it worth while to compute all of its places (measured with vectors of 64
+/// bytes).
+constexpr int fullVector(std::uint32_t lanes) { return lanes < kBlock ? 4 : 6; }
 
 using Place = std::array<std::int64_t, 3>;
 
@@ -77,8 +78,8 @@ class Builder
 {
 public:
    Builder(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still,
-           Layout &out)
-       : m_assembly(assembly), m_actuated(actuated), m_still(still), m_out(out)
+           std::uint32_t lanes, Layout &out)
+       : m_assembly(assembly), m_actuated(actuated), m_still(still), m_lanes(lanes), m_out(out)
    {}
    void placeCells();
    void placeBonds();
@@ -87,12 +88,14 @@ private:
    std::uint32_t wayOf(std::int64_t bond, bool reversed);
    std::uint32_t tileOf(std::uint32_t place) const;
    void addBonds(std::vector<Bond> &bonds, std::size_t first, std::size_t last);
+   bool isDense(const Bond *const (&lane)[kBlock]) const;
    void addRun(const Bond *const (&lane)[kBlock], bool listed);
    std::array<double, kConstants> constantsOf(const Bond &bond) const;
    void addCrossings();
 
    const Assembly &m_assembly;
    const std::vector<bool> &m_actuated, &m_still;
+   const std::uint32_t m_lanes;
    Layout &m_out;
    std::map<std::array<std::int64_t, 9>, std::uint32_t> m_frames;
    std::map<std::array<double, kConstants>, std::uint32_t> m_sets;
@@ -243,6 +246,18 @@ void Builder::addRun(const Bond *const (&lane)[kBlock], bool listed)
    m_out.runs.push_back(run);
 }
 
+/// Whether the vectors that a run takes are full enough.
+bool Builder::isDense(const Bond *const (&lane)[kBlock]) const
+{
+   int bonds = 0, vectors = 0;
+   for (std::uint32_t at = 0; at < kBlock; at += m_lanes) {
+      const int some = static_cast<int>(m_lanes - std::count(lane + at, lane + at + m_lanes, nullptr));
+      bonds += some;
+      vectors += some > 0;
+   }
+   return bonds >= vectors * fullVector(m_lanes);
+}
+
 /// Runs of the bonds of one chunk, which come sorted by block, way, and offset.
 void Builder::addBonds(std::vector<Bond> &bonds, std::size_t first, std::size_t last)
 {
@@ -255,11 +270,10 @@ void Builder::addBonds(std::vector<Bond> &bonds, std::size_t first, std::size_t 
              bonds[j].hi - bonds[j].lo == head.hi - head.lo;
            ++j)
          lane[bonds[j].lo % kBlock] = &bonds[j];
-      const bool dense = static_cast<int>(j - i) >= kFull;
       // Two bonds between the same cells take a place each.
       const bool twice = std::count(std::begin(lane), std::end(lane), nullptr) + static_cast<int>(j - i) >
                          static_cast<int>(kBlock);
-      if (dense && !twice)
+      if (!twice && isDense(lane))
          addRun(lane, false);
       else
          for (std::size_t k = i; k < j; ++k)
@@ -361,9 +375,10 @@ void Builder::addCrossings()
 
 } // namespace
 
-Layout::Layout(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still)
+Layout::Layout(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still,
+               std::uint32_t lanes)
 {
-   Builder builder(assembly, actuated, still, *this);
+   Builder builder(assembly, actuated, still, lanes, *this);
    builder.placeCells();
    builder.placeBonds();
 }

@@ -11,8 +11,9 @@ struct Layout
 {
    /// `actuated` says of each bond whether its rest shape may change; empty where none does. `still` says of
    /// each cell whether nothing ever moves it: bonds between two such cells are left out, since they move
-   /// nothing.
-   Layout(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still);
+   /// nothing. `lanes` of a vector: those of the longest, whatever a machine has, so that all add up alike.
+   Layout(const Assembly &assembly, const std::vector<bool> &actuated, const std::vector<bool> &still,
+          std::uint32_t lanes);
 
    std::size_t places = 0;           // of cells, with padding
    std::vector<std::uint32_t> place; // of each cell

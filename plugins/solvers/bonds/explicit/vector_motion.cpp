@@ -86,7 +86,7 @@ template<typename T>
 VectorMotion<T>::VectorMotion(const sdk::SceneView &scene, const Assembly &assembly,
                               const Couplings &couplings, const Options &options)
     : Motion(scene, assembly, couplings, options),
-      m_layout(assembly, m_actuation.driven(assembly.links), stillCells(assembly, m_drive)),
+      m_layout(assembly, m_actuation.driven(assembly.links), stillCells(assembly, m_drive), 64 / sizeof(T)),
       m_kernel(sweepKernel<T>(
           {assembly.damped, assembly.law == Law::small, !options.reproducible, options.instructions}))
 {
