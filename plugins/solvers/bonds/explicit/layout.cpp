@@ -193,7 +193,7 @@ void Builder::addRun(const Bond *const (&lane)[kBlock], bool listed)
 {
    Run run;
    const Bond *some = nullptr, *last = nullptr;
-   bool uniform = true, coupled = false, actuated = false, ascending = listed;
+   bool uniform = true, coupled = false, actuated = false, ascending = listed, plain[2] = {true, true};
    for (std::size_t i = 0; i < kBlock; ++i) {
       if (!lane[i])
          continue;
@@ -205,15 +205,21 @@ void Builder::addRun(const Bond *const (&lane)[kBlock], bool listed)
       run.lo = lane[i]->lo - static_cast<std::uint32_t>(i);
       run.hi = lane[i]->hi - static_cast<std::uint32_t>(i);
       const BondConstants &k = m_assembly.constants[lane[i]->bond];
-      coupled = coupled || k.s[0] != 0 || k.s[1] != 0;
-      actuated = actuated || (!m_actuated.empty() && m_actuated[lane[i]->bond]);
+      const bool stepped = k.s[0] != 0 || k.s[1] != 0,
+                 driven = !m_actuated.empty() && m_actuated[lane[i]->bond];
+      coupled = coupled || stepped;
+      actuated = actuated || driven;
+      plain[i / (kBlock / 2)] = plain[i / (kBlock / 2)] && !stepped && !driven;
       uniform = uniform && constantsOf(*lane[i]) == constantsOf(*some);
    }
    run.axis = static_cast<std::uint8_t>(std::min<std::uint32_t>(some->way, 3));
    run.frame = some->way < 3 ? 0 : some->way - 3;
-   run.flags = static_cast<std::uint8_t>((uniform ? Run::uniform : 0) | (listed ? Run::listed : 0) |
-                                         (coupled ? Run::coupled : 0) | (actuated ? Run::actuated : 0) |
-                                         (ascending ? Run::ascending : 0));
+   const std::pair<bool, std::uint8_t> flags[] = {{uniform, Run::uniform},     {listed, Run::listed},
+                                                  {coupled, Run::coupled},     {actuated, Run::actuated},
+                                                  {ascending, Run::ascending}, {plain[0], Run::plainFirst},
+                                                  {plain[1], Run::plainSecond}};
+   for (const auto &[is, flag] : flags)
+      run.flags = static_cast<std::uint8_t>(run.flags | (is ? flag : 0));
    if (uniform) {
       const auto set = constantsOf(*some);
       const auto [found, added] = m_sets.try_emplace(set, static_cast<std::uint32_t>(m_out.pool.size()));

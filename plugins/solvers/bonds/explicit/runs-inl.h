@@ -63,7 +63,8 @@ HWY_INLINE void keepOnly(D d, unsigned there, BondOut<V> &out)
 }
 
 template<class K, Needs kNeeds, class D, typename T = hn::TFromD<D>>
-HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
+HWY_INLINE void bondsOfVector(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends,
+                              std::size_t at, unsigned there, T *power)
 {
    using V = hn::Vec<D>;
    constexpr bool kGeneral = kNeeds == Needs::any;
@@ -71,86 +72,98 @@ HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const 
    const bool uniform = run.flags & Run::uniform;
    const bool askew = kNeeds == Needs::frame || (kGeneral && run.axis == 3);
    const T *pool = work.pool + run.constants;
+   BondLaw<V> law;
+   const auto constant = [&](std::size_t i) HWY_ATTR {
+      return uniform ? hn::Set(d, pool[i]) : hn::LoadU(d, pool + i * kBlock + at);
+   };
+   law.length = constant(kLength);
+   law.k = {constant(kAxial), constant(kAxial + 1), constant(kAxial + 2)};
+   law.c = {constant(kTorsion), constant(kTorsion + 1), constant(kTorsion + 2)};
+   if constexpr (K::damped) {
+      law.d = {constant(kDamping), constant(kDamping + 1), constant(kDamping + 2)};
+      law.e = {constant(kDamping + 3), constant(kDamping + 4), constant(kDamping + 5)};
+   }
+   Three<V> frame[3];
+   if constexpr (kGeneral) {
+      const V zero = hn::Zero(d);
+      law.part[0] = law.part[1] = zero;
+      if (run.flags & Run::coupled) {
+         law.part[0] = constant(kCoupling);
+         law.part[1] = constant(kCoupling + 1);
+      }
+      law.stretch = law.turn = {zero, zero, zero};
+      if (run.flags & Run::actuated) {
+         constexpr std::size_t own[3] = {0, 1, 2};
+         law.stretch = three(d, work.rest + run.rest + at, kBlock, own);
+         law.turn = three(d, work.rest + run.rest + 3 * kBlock + at, kBlock, own);
+      }
+   }
+   if constexpr (kNeeds != Needs::nothing)
+      if (askew)
+         for (int i = 0; i < 3; ++i) {
+            const T *row = work.frames + 9 * run.frame + 3 * i;
+            frame[i] = {hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2])};
+         }
+   const auto inAxes = [&](Three<V> v) HWY_ATTR {
+      if constexpr (kNeeds != Needs::nothing)
+         return askew ? rotate<K::fused>(frame, v) : v;
+      else
+         return v;
+   };
+   const std::size_t stride = ends.stride;
+   const T *a = ends.a + at, *b = ends.b + at;
+   BondState<V> state;
+   state.du = inAxes(three(d, b, stride, order) - three(d, a, stride, order));
+   if constexpr (!K::small) {
+      state.aw = hn::LoadU(d, a + 3 * stride);
+      state.bw = hn::LoadU(d, b + 3 * stride);
+   }
+   state.a = inAxes(three(d, a + 4 * stride, stride, order));
+   state.b = inAxes(three(d, b + 4 * stride, stride, order));
+   if constexpr (K::damped) {
+      const T *ra = ends.rateA + at, *rb = ends.rateB + at;
+      state.dv = inAxes(three(d, rb, stride, order) - three(d, ra, stride, order));
+      const Three<V> wa = three(d, ra + 3 * stride, stride, order),
+                     wb = three(d, rb + 3 * stride, stride, order);
+      state.dw = inAxes(wb - wa);
+      state.sum = inAxes(wa + wb);
+   }
+   BondOut<V> out;
+   if constexpr (K::small)
+      out = smallLaw<K::damped, kGeneral, K::fused>(d, state, law);
+   else
+      out = bondLaw<K::damped, kGeneral, K::fused>(d, state, law);
+   if constexpr (kNeeds != Needs::nothing)
+      if (askew) {
+         out.force = rotateBack<K::fused>(frame, out.force);
+         out.atA = rotateBack<K::fused>(frame, out.atA);
+         out.atB = rotateBack<K::fused>(frame, out.atB);
+      }
+   if (HWY_UNLIKELY(there != (2u << (hn::Lanes(d) - 1)) - 1))
+      keepOnly<K>(d, there, out);
+   addThree(d, ends.outA + at, ends.outStrideA, order, out.force);
+   addThree(d, ends.outA + 3 * ends.outStrideA + at, ends.outStrideA, order, out.atA);
+   takeThree(d, ends.outB + at, ends.outStrideB, order, out.force);
+   takeThree(d, ends.outB + 3 * ends.outStrideB + at, ends.outStrideB, order, out.atB);
+   if constexpr (K::damped)
+      hn::StoreU(hn::Add(hn::LoadU(d, power + at), out.power), d, power + at);
+}
+
+/// Halves of a run without coupled or actuated bonds take the shorter law, whatever the length of vectors.
+template<class K, Needs kNeeds, class D, typename T = hn::TFromD<D>>
+HWY_INLINE void bondsOfRun(D d, const SweepWork<T> &work, const Run &run, const EndPlaces<T> &ends, T *power)
+{
    const std::size_t lanes = hn::Lanes(d);
    for (std::size_t at = 0; at < kBlock; at += lanes) {
       const unsigned there = run.lanes >> at & ((2u << (lanes - 1)) - 1);
       if (there == 0)
          continue;
-      BondLaw<V> law;
-      const auto constant = [&](std::size_t i) HWY_ATTR {
-         return uniform ? hn::Set(d, pool[i]) : hn::LoadU(d, pool + i * kBlock + at);
-      };
-      law.length = constant(kLength);
-      law.k = {constant(kAxial), constant(kAxial + 1), constant(kAxial + 2)};
-      law.c = {constant(kTorsion), constant(kTorsion + 1), constant(kTorsion + 2)};
-      if constexpr (K::damped) {
-         law.d = {constant(kDamping), constant(kDamping + 1), constant(kDamping + 2)};
-         law.e = {constant(kDamping + 3), constant(kDamping + 4), constant(kDamping + 5)};
-      }
-      Three<V> frame[3];
-      if constexpr (kGeneral) {
-         const V zero = hn::Zero(d);
-         law.part[0] = law.part[1] = zero;
-         if (run.flags & Run::coupled) {
-            law.part[0] = constant(kCoupling);
-            law.part[1] = constant(kCoupling + 1);
+      if constexpr (kNeeds == Needs::any && 2 * hn::MaxLanes(d) <= kBlock)
+         if (run.axis < 3 && (run.flags & (2 * at < kBlock ? Run::plainFirst : Run::plainSecond))) {
+            bondsOfVector<K, Needs::nothing>(d, work, run, ends, at, there, power);
+            continue;
          }
-         law.stretch = law.turn = {zero, zero, zero};
-         if (run.flags & Run::actuated) {
-            constexpr std::size_t own[3] = {0, 1, 2};
-            law.stretch = three(d, work.rest + run.rest + at, kBlock, own);
-            law.turn = three(d, work.rest + run.rest + 3 * kBlock + at, kBlock, own);
-         }
-      }
-      if constexpr (kNeeds != Needs::nothing)
-         if (askew)
-            for (int i = 0; i < 3; ++i) {
-               const T *row = work.frames + 9 * run.frame + 3 * i;
-               frame[i] = {hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2])};
-            }
-      const auto inAxes = [&](Three<V> v) HWY_ATTR {
-         if constexpr (kNeeds != Needs::nothing)
-            return askew ? rotate<K::fused>(frame, v) : v;
-         else
-            return v;
-      };
-      const std::size_t stride = ends.stride;
-      const T *a = ends.a + at, *b = ends.b + at;
-      BondState<V> state;
-      state.du = inAxes(three(d, b, stride, order) - three(d, a, stride, order));
-      if constexpr (!K::small) {
-         state.aw = hn::LoadU(d, a + 3 * stride);
-         state.bw = hn::LoadU(d, b + 3 * stride);
-      }
-      state.a = inAxes(three(d, a + 4 * stride, stride, order));
-      state.b = inAxes(three(d, b + 4 * stride, stride, order));
-      if constexpr (K::damped) {
-         const T *ra = ends.rateA + at, *rb = ends.rateB + at;
-         state.dv = inAxes(three(d, rb, stride, order) - three(d, ra, stride, order));
-         const Three<V> wa = three(d, ra + 3 * stride, stride, order),
-                        wb = three(d, rb + 3 * stride, stride, order);
-         state.dw = inAxes(wb - wa);
-         state.sum = inAxes(wa + wb);
-      }
-      BondOut<V> out;
-      if constexpr (K::small)
-         out = smallLaw<K::damped, kGeneral, K::fused>(d, state, law);
-      else
-         out = bondLaw<K::damped, kGeneral, K::fused>(d, state, law);
-      if constexpr (kNeeds != Needs::nothing)
-         if (askew) {
-            out.force = rotateBack<K::fused>(frame, out.force);
-            out.atA = rotateBack<K::fused>(frame, out.atA);
-            out.atB = rotateBack<K::fused>(frame, out.atB);
-         }
-      if (HWY_UNLIKELY(there != (2u << (lanes - 1)) - 1))
-         keepOnly<K>(d, there, out);
-      addThree(d, ends.outA + at, ends.outStrideA, order, out.force);
-      addThree(d, ends.outA + 3 * ends.outStrideA + at, ends.outStrideA, order, out.atA);
-      takeThree(d, ends.outB + at, ends.outStrideB, order, out.force);
-      takeThree(d, ends.outB + 3 * ends.outStrideB + at, ends.outStrideB, order, out.atB);
-      if constexpr (K::damped)
-         hn::StoreU(hn::Add(hn::LoadU(d, power + at), out.power), d, power + at);
+      bondsOfVector<K, kNeeds>(d, work, run, ends, at, there, power);
    }
 }
 

@@ -30,6 +30,8 @@ struct Run
    static constexpr std::uint8_t listed = 2;  // what is not there comes last
    static constexpr std::uint8_t coupled = 4, actuated = 8;
    static constexpr std::uint8_t ascending = 16; // listed in ascending order at both ends, none twice
+   /// The first half, or the second, has no bond that is coupled or actuated.
+   static constexpr std::uint8_t plainFirst = 32, plainSecond = 64;
 };
 
 /// Constants of a bond in the pool, in this order; each takes one place, or sixteen where the run is not

@@ -44,25 +44,28 @@ inline void addContact(const Assembly &assembly, State &state, std::int64_t i, d
    const double rate = -state.column(9)[i];
    const double normal = std::max(0.0, k * depth + ground.damping * rate);
    force.z += normal;
-   sums.dissipated += (normal - k * depth) * rate * dt;
-   if (!friction)
+   double lost = (normal - k * depth) * rate * dt;
+   if (!friction) {
+      sums.dissipated += lost;
       return;
+   }
    const auto v = slipVelocity(assembly, state, i);
    double f[2];
    for (int j = 0; j < 2; ++j)
       f[j] = -k * (state.grip[j][i] + ahead * v[j]) - ground.damping * v[j];
-   const double size = std::sqrt(f[0] * f[0] + f[1] * f[1]), most = ground.friction * normal;
-   if (size > most) {
+   const double squared = f[0] * f[0] + f[1] * f[1], most = ground.friction * normal;
+   if (squared > most * most) {
+      const double part = most / std::sqrt(squared);
       for (double &one : f)
-         one *= most / size;
+         one *= part;
       if (ahead == 0)
          for (int j = 0; j < 2; ++j) {
             const double held = -f[j] / k;
-            sums.dissipated += 0.5 * k * (state.grip[j][i] * state.grip[j][i] - held * held);
+            lost += 0.5 * k * (state.grip[j][i] * state.grip[j][i] - held * held);
             state.grip[j][i] = held;
          }
    }
-   sums.dissipated -= (f[0] * v[0] + f[1] * v[1]) * dt;
+   sums.dissipated += lost - (f[0] * v[0] + f[1] * v[1]) * dt;
    const double h = assembly.halfHeight[i];
    force.x += f[0];
    force.y += f[1];
@@ -76,11 +79,13 @@ inline void driftContact(const Assembly &assembly, State &state, std::int64_t i,
    if (!(penetration(assembly, state, i) > 0))
       return;
    const auto v = slipVelocity(assembly, state, i);
+   double stored = 0;
    for (std::size_t j = 0; j < 2; ++j) {
       const double old = state.grip[j][i], now = old + v[j] * dt;
-      sums.dissipated -= 0.5 * assembly.ground.stiffness * (now * now - old * old);
+      stored += now * now - old * old;
       state.grip[j][i] = now;
    }
+   sums.dissipated -= 0.5 * assembly.ground.stiffness * stored;
 }
 
 } // namespace bonds
