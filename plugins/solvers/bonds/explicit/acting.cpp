@@ -86,7 +86,7 @@ Acting actingOn(const Assembly &assembly, const Couplings &couplings, const Stat
       }
       Sums sums;
       if (assembly.hasGround)
-         addContact(assembly, touched, i, 0, 0, force, torque, sums);
+         addContact(assembly.ground, touchOf(assembly, touched, i), 0, 0, force, torque, sums);
       add(out.all, i, force, torque);
    }
    return out;

@@ -108,7 +108,7 @@ void Dynamics::net(std::int64_t i, double ahead, double weight, Vec3 &force, Vec
       sums.dissipated += assembly.drag * (dot(p, v) + dot(turn, w)) * weight;
    }
    if constexpr ((Effects & kGround) != 0)
-      addContact(assembly, m_state, i, ahead, weight, force, torque, sums);
+      addContact(assembly.ground, touchOf(assembly, m_state, i), ahead, weight, force, torque, sums);
 }
 
 void Dynamics::drift(std::int64_t i, double dt)
@@ -180,7 +180,7 @@ void Dynamics::piece(Phase phase, double dt, const StageOfStep &stage, std::int6
    const auto moveGrip = [&](std::int64_t i, double time) {
       if constexpr ((Effects & kGround) != 0)
          if (m_assembly->hasFriction)
-            driftContact(*m_assembly, m_state, i, time, sums);
+            driftContact(m_assembly->ground, touchOf(*m_assembly, m_state, i), time, sums);
    };
    // Work of the loads over a displacement made at velocity v and spin w.
    const auto countLoad = [&](std::int64_t i, double time) {

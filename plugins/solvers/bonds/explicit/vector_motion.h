@@ -52,7 +52,7 @@ private:
                     std::size_t hiStride);
    bool findTouching(std::uint32_t begin, std::uint32_t count, std::uint8_t *touches, bool gripping) const;
    bool grips(std::int64_t cell) const { return m_state.grip[0][cell] != 0 || m_state.grip[1][cell] != 0; }
-   void pullContact(std::int64_t cell, bool rates) const;
+   Touch touchAt(std::uint32_t place, std::int64_t cell, const T *speeds);
    void visitTouching(Visit &visit, std::uint32_t begin, std::uint32_t end, T *lo);
    void visitDriven(Visit &visit, std::uint32_t place, const T *lo, const T *hi, std::size_t hiStride);
    void gripMoves(Sums &sums, std::uint32_t begin, std::uint32_t end, double dt);

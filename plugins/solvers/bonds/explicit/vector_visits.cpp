@@ -61,15 +61,21 @@ bool VectorMotion<T>::findTouching(std::uint32_t begin, std::uint32_t count, std
    return any != 0;
 }
 
-/// Brings what contact asks of a cell to m_state.
+/// `speeds`: of velocity and spin, six columns.
 template<typename T>
-void VectorMotion<T>::pullContact(std::int64_t cell, bool rates) const
+Touch VectorMotion<T>::touchAt(std::uint32_t place, std::int64_t cell, const T *speeds)
 {
-   const std::size_t at = m_layout.place[cell];
-   m_state.column(2)[cell] = static_cast<double>(column(2)[at]);
-   const T *from = (rates ? m_sweep.rate : column(7)) + at;
-   for (int k = 0; k < 5; ++k) // no contact asks for the spin about the vertical
-      m_state.column(7 + k)[cell] = static_cast<double>(from[static_cast<std::size_t>(k) * m_sweep.stride]);
+   const Assembly &assembly = *m_assembly;
+   const double h = assembly.halfHeight[cell];
+   const auto speed = [&](std::size_t k) { return static_cast<double>(speeds[k * m_sweep.stride + place]); };
+   Touch touch{assembly.ground.height - (assembly.rest[2][cell] + static_cast<double>(column(2)[place]) - h),
+               speed(2),
+               {speed(0) - h * speed(4), speed(1) + h * speed(3)},
+               h,
+               {}};
+   for (std::size_t j = 0; j < 2 && assembly.hasFriction; ++j)
+      touch.grip[j] = &m_state.grip[j][cell];
+   return touch;
 }
 
 /// Contact of a chunk's cells, before they are kicked.
@@ -84,11 +90,11 @@ void VectorMotion<T>::visitTouching(Visit &visit, std::uint32_t begin, std::uint
       const std::int64_t cell = touches[i] ? m_layout.cell[begin + i] : -1;
       if (cell < 0)
          continue;
-      pullContact(cell, true);
+      const Touch touch = touchAt(begin + i, cell, m_sweep.rate);
       Vec3 force, torque;
-      addContact(assembly, m_state, cell, visit.ahead, visit.weight, force, torque, visit.sums);
+      addContact(assembly.ground, touch, visit.ahead, visit.weight, force, torque, visit.sums);
       if (visit.move.last && assembly.hasFriction)
-         driftContact(assembly, m_state, cell, visit.move.drift, visit.sums);
+         driftContact(assembly.ground, touch, visit.move.drift, visit.sums);
       if (assembly.hasFriction)
          m_gripping[begin + i] = grips(cell);
       const double all[6] = {force.x, force.y, force.z, torque.x, torque.y, torque.z};
@@ -129,8 +135,7 @@ void VectorMotion<T>::gripMoves(Sums &sums, std::uint32_t begin, std::uint32_t e
          const std::int64_t cell = touches[i] ? m_layout.cell[begin + i] : -1;
          if (cell < 0)
             continue;
-         pullContact(cell, false);
-         driftContact(*m_assembly, m_state, cell, dt, sums);
+         driftContact(m_assembly->ground, touchAt(begin + i, cell, column(7)), dt, sums);
          m_gripping[begin + i] = grips(cell);
       }
    }
