@@ -42,6 +42,7 @@ private slots:
    void nothingIsBothFasterAndBetterThanTheFront();
    void theReportHasARowForEachRunAndAPlot();
    void aWalkersStrideIsHeldAgainstItsFinestRunAndTellsWhatIsSure();
+   void implicitStepsAreTriedAsLongAsTheMotionBears();
    void aQuantityOfNoCellIsRefused();
 };
 
@@ -104,6 +105,23 @@ void StudyAccuracyTest::aWalkersStrideIsHeldAgainstItsFinestRunAndTellsWhatIsSur
    // itself and would always win.
    if (study->cheapest >= 0)
       QVERIFY(study->reference.ownError && *study->reference.ownError <= study->tolerance);
+}
+
+/// Only the end counts, so that no curve asks for steps of its own: a dozen or fewer are tried (ten times as
+/// long as the solver's own). What they do not follow is the swing that the tip is left with, half a per cent
+/// of its way.
+void StudyAccuracyTest::implicitStepsAreTriedAsLongAsTheMotionBears()
+{
+   const auto study = studied(sample("stiff-flexure"), 5);
+   DIATOM_VERIFY_OK(study);
+   std::int64_t fewest = 0;
+   for (const AccuracyRow &row : study->rows)
+      if (row.setting.starts_with("implicit") && row.steps > 0 && row.error) {
+         fewest = fewest == 0 ? row.steps : std::min(fewest, row.steps);
+         QVERIFY2(*row.error < 0.007, qPrintable(QString::number(*row.error)));
+         QVERIFY(std::abs(row.step * static_cast<double>(row.steps) / 0.01 - 1) < 1e-9);
+      }
+   QVERIFY2(fewest > 0 && fewest <= 12, qPrintable(QString::number(fewest)));
 }
 
 void StudyAccuracyTest::aQuantityOfNoCellIsRefused()
