@@ -98,7 +98,9 @@ void StudyAccuracyTest::aWalkersStrideIsHeldAgainstItsFinestRunAndTellsWhatIsSur
    DIATOM_VERIFY_OK(study);
    QVERIFY(!study->reference.exact);
    QVERIFY(study->sensitivity);
-   QVERIFY(std::abs(study->reference.value) > 1e-4); // it walks a tenth of a cell at the very least
+   // It walks a tenth of a cell and more; any one run of so chaotic a scene may end where it began.
+   QVERIFY(std::any_of(study->rows.begin(), study->rows.end(),
+                       [](const AccuracyRow &row) { return std::abs(row.value) > 1e-4; }));
    if (!study->reference.asymptotic)
       QVERIFY(!study->reference.doubt.empty());
    // No run is recommended that is not surer than what it is held against: the finest one is held against
