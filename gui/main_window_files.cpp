@@ -32,7 +32,7 @@ std::vector<std::filesystem::path> MainWindow::sampleFolders()
 
 QString MainWindow::lastFolder(const char *purpose) const
 {
-   const QString remembered =
+   QString remembered =
        m_settings ? m_settings->value(QStringLiteral("folder/%1").arg(QString::fromUtf8(purpose))).toString()
                   : QString();
    if (!remembered.isEmpty())
