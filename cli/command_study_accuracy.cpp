@@ -124,10 +124,26 @@ nlohmann::ordered_json sampleLine(const AccuracySample &sample, const AccuracySt
            {"times_faster", gain ? fmt::format("{:.3g}", *gain) : "unknown"}};
 }
 
+/// Of the samples asked for, one that there is not.
+std::optional<Error> unknownSample(const std::vector<AccuracySample> &all,
+                                   const std::vector<std::string> &asked)
+{
+   std::string known;
+   for (const AccuracySample &sample : all)
+      known += (known.empty() ? "" : ", ") + sample.id;
+   for (const std::string &id : asked)
+      if (std::none_of(all.begin(), all.end(), [&](const AccuracySample &sample) { return sample.id == id; }))
+         return Error{ErrorCode::usage, fmt::format("--sample: there is no \"{}\", but {}", id, known)};
+   return {};
+}
+
 void studySamples(const AccuracyOptions &options, Context &context)
 {
+   const std::vector<AccuracySample> samples = accuracySamples();
+   if (const auto unknown = unknownSample(samples, options.samples))
+      return context.fail(*unknown);
    auto table = nlohmann::ordered_json::array();
-   for (const AccuracySample &sample : accuracySamples()) {
+   for (const AccuracySample &sample : samples) {
       if (!options.samples.empty() &&
           std::find(options.samples.begin(), options.samples.end(), sample.id) == options.samples.end())
          continue;

@@ -82,6 +82,10 @@ void CommandsTest::misuseExitsWithTwo()
       QVERIFY2(refused.err.contains("is not a number above 0"), refused.err.constData());
    }
    QCOMPARE(diatomRuns({"export", sample("gripper.diatom"), file("x.docx")}).exit, 2);
+   const Outcome unknown = diatomRuns({"study", "accuracy", "--sample", "sagg", "-o", file("x")});
+   QCOMPARE(unknown.exit, 2);
+   QVERIFY2(unknown.err.contains("\"sagg\"") && unknown.err.contains("stiff-flexure"),
+            unknown.err.constData());
 }
 
 void CommandsTest::unreadableInputExitsWithThree()

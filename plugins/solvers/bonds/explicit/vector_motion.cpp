@@ -1,9 +1,8 @@
 #include "explicit/vector_motion.h"
 
+#include "explicit/box_columns.h"
 #include "explicit/forces.h"
 #include "explicit/stages.h"
-
-#include <cmath>
 
 namespace bonds {
 
@@ -51,33 +50,6 @@ std::vector<bool> stillCells(const Assembly &assembly, const Drive &drive)
    for (const Drive::Led &led : drive.cells())
       still[led.cell] = false;
    return still;
-}
-
-/// Of a cell's inertia, as BoxColumn has it: the ball is that of the two principal values that are most
-/// alike, or of one of them.
-std::array<double, kBoxColumns> boxColumns(const Assembly &assembly, std::int64_t cell)
-{
-   constexpr double kAlike = 1e-12;
-   double own[3];
-   for (std::size_t k = 0; k < 3; ++k)
-      own[k] = assembly.boxInertia[k][cell];
-   const auto apart = [&](int k) { return std::abs(own[(k + 1) % 3] - own[(k + 2) % 3]); };
-   const int first = apart(0) <= apart(1) ? (apart(0) <= apart(2) ? 0 : 2) : (apart(1) <= apart(2) ? 1 : 2);
-   const int second = (first + 1) % 3, ball = (first + 2) % 3;
-   const Mat3 frame = matrix(assembly.orientation[cell]);
-   std::array<double, kBoxColumns> out{own[ball], 1 / own[ball]};
-   const auto about = [&](std::size_t column, int k) {
-      const Vec3 axis = frame * Vec3{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0};
-      out[column] = axis.x;
-      out[column + 1] = axis.y;
-      out[column + 2] = axis.z;
-      out[column + 3] = own[k] - own[ball];
-      out[column + 4] = 1 / own[k] - 1 / own[ball];
-   };
-   about(kFirstAxis, first);
-   if (apart(first) > kAlike * own[ball])
-      about(kSecondAxis, second);
-   return out;
 }
 
 } // namespace
@@ -317,10 +289,11 @@ template<typename T>
 double VectorMotion<T>::restore()
 {
    m_columns = m_savedColumns;
-   if (m_assembly->hasFriction)
+   if (m_assembly->hasFriction) {
       m_state.grip = m_saved.grip;
-   for (std::int64_t i = 0; i < m_assembly->cells && m_assembly->hasFriction; ++i)
-      m_gripping[m_layout.place[i]] = grips(i);
+      for (std::int64_t i = 0; i < m_assembly->cells; ++i)
+         m_gripping[m_layout.place[i]] = grips(i);
+   }
    m_stale = true;
    return Motion::restore();
 }
