@@ -41,6 +41,18 @@ Quat permuted(Quat q, int axis)
    return {q.w, v.x, v.y, v.z};
 }
 
+/// As long as 1, anisotropic, and unlike at its two ends.
+BondConstants steppedBond()
+{
+   BondConstants k;
+   const double stiffness[3] = {1, 0.3, 0.5}, turning[3] = {0.08, 0.02, 0.15};
+   std::copy_n(stiffness, 3, k.k);
+   std::copy_n(turning, 3, k.c);
+   k.s[0] = k.turn[0] = 0.2;
+   k.s[1] = k.turn[1] = -0.1;
+   return k;
+}
+
 struct Result
 {
    Vec3 f1, t1, f2, t2;
@@ -195,12 +207,7 @@ void SolverBondsKernelTest::forcesAreTheGradientOfTheEnergy()
    std::mt19937_64 random(20240611);
    std::uniform_real_distribution<double> unit(-1, 1);
    const auto any = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
-   BondConstants k;
-   const double stiffness[3] = {1, 0.3, 0.5}, turning[3] = {0.08, 0.02, 0.15};
-   std::copy_n(stiffness, 3, k.k);
-   std::copy_n(turning, 3, k.c);
-   k.s[0] = k.turn[0] = 0.2; // of a bond as long as 1
-   k.s[1] = k.turn[1] = -0.1;
+   const BondConstants k = steppedBond();
    for (int trial = 0; trial < 200; ++trial) {
       const Quat qa = exponential(2.0 * any());
       const Quat qb = qa * exponential(1.5 * any());
@@ -237,12 +244,7 @@ void SolverBondsKernelTest::aChangeOfRestShapeGainsTheDifferenceOfEnergies()
    std::mt19937_64 random(20261128);
    std::uniform_real_distribution<double> unit(-1, 1);
    const auto any = [&] { return Vec3{unit(random), unit(random), unit(random)}; };
-   BondConstants k;
-   const double stiffness[3] = {1, 0.3, 0.5}, turning[3] = {0.08, 0.02, 0.15};
-   std::copy_n(stiffness, 3, k.k);
-   std::copy_n(turning, 3, k.c);
-   k.s[0] = k.turn[0] = 0.2;
-   k.s[1] = k.turn[1] = -0.1;
+   const BondConstants k = steppedBond();
    for (int trial = 0; trial < 400; ++trial) {
       Ends ends{{}, exponential(0.4 * any()), exponential(0.4 * any()), {}, {}, {}, 1};
       ends.separation = Vec3{1, 0, 0} + 0.2 * any();
